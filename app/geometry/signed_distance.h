@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/scene/scene.h"
+
+namespace pregrasp {
+
+/// Signed distance to a surface at one point: `phi` [m], negative inside, and its unit gradient.
+struct DistanceSample {
+  double phi = 0.0;
+  Vector3 nhat = Vector3::UnitZ();
+};
+
+/// The signed distance of one loaded shape in its own frame B: closed form for primitives, a
+/// bounding-volume hierarchy over triangles with angle-weighted pseudonormals for meshes
+/// (Baerentzen and Aanaes 2005), the smallest part for a union (exact outside, a lower bound of
+/// depth inside). Immutable, safe to share between threads.
+class SignedDistance {
+ public:
+  explicit SignedDistance(const Shape& shape);
+  ~SignedDistance();
+  SignedDistance(SignedDistance&&) noexcept;
+  SignedDistance& operator=(SignedDistance&&) noexcept;
+
+  double Calc(const Vector3& p_B) const;
+  DistanceSample CalcWithGradient(const Vector3& p_B) const;
+
+  /// The surface point nearest to p_B, with its outward normal in `nhat`.
+  Vector3 Project(const Vector3& p_B, Vector3* nhat) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+/// Signed distance to the world around the object: the smallest over all bodies but body 0.
+class EnvironmentDistance {
+ public:
+  explicit EnvironmentDistance(const Scene& scene);
+
+  /// At a world point with every body at its start, or at `X_WB` (one pose per scene body; body 0's
+  /// is not used).
+  DistanceSample Calc(const Vector3& p_W) const;
+  DistanceSample Calc(const Vector3& p_W, const std::vector<RigidTransform>& X_WB) const;
+
+ private:
+  std::vector<SignedDistance> distances_;  // of bodies 1, 2, ..
+  std::vector<RigidTransform> X_WB_start_;
+};
+
+}  // namespace pregrasp

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# build.sh PRESET [--with PACKAGES_FILE].. [CMAKE OPTION]..: installs the Debian packages that are missing, configures and builds.
+# Quick when nothing changed. Used by run.sh, test.sh and tests/bench/run.sh.
+set -euo pipefail
+cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
+
+preset=$1
+shift
+lists=(packages.txt)
+options=()
+while (($#)); do
+  case $1 in
+    --with) lists+=("$2"); shift 2 ;;
+    *) options+=("$1"); shift ;;
+  esac
+done
+
+missing=()
+for package in $(cat "${lists[@]}"); do
+  dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || missing+=("$package")
+done
+if ((${#missing[@]})); then
+  apt=(env DEBIAN_FRONTEND=noninteractive apt-get)
+  if ((EUID != 0)); then
+    if ! sudo -n true 2>/dev/null; then
+      echo "pregrasp needs Debian packages that are missing here. Install them as root, then run this again:" >&2
+      echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
+      exit 2
+    fi
+    apt=(sudo "${apt[@]}")
+  fi
+  echo "installing ${#missing[@]} packages: ${missing[*]}" >&2
+  log=$(mktemp)
+  if ! { "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+    tail -20 "$log" >&2
+    echo "installing packages failed; the whole log is $log" >&2
+    exit 1
+  fi
+  rm -f "$log"
+fi
+
+build=build/$preset
+mkdir -p "$build"
+exec 9>"$build/.lock"
+flock 9  # two scripts at once must not build into one folder
+if ! cmake --preset "$preset" "${options[@]}" >"$build/configure.log" 2>&1; then
+  cat "$build/configure.log" >&2
+  exit 1
+fi
+if [[ -t 2 ]]; then
+  cmake --build --preset "$preset" >&2
+elif ! cmake --build --preset "$preset" >"$build/build.log" 2>&1; then
+  grep -A20 -m1 'FAILED' "$build/build.log" >&2 || tail -40 "$build/build.log" >&2
+  exit 1
+fi

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# test.sh [--all] [CTEST ARGS]: installs what is missing, builds and runs the tests. --all adds the long tests, the sanitizers and
+# clang-tidy.
+set -euo pipefail
+cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
+all=false
+if [[ ${1:-} == --all ]]; then
+  all=true
+  shift
+fi
+jobs=$(nproc)
+
+./build.sh release --with packages-dev.txt -DPREGRASP_TESTS=ON
+if ! $all; then
+  exec ctest --preset release -j "$jobs" -LE long "$@"
+fi
+ctest --preset release -j "$jobs" "$@"
+./build.sh asan-ubsan --with packages-dev.txt
+# Debian's Simbody, MRPT and Mesa keep what they allocate at start-up; leaks are looked for in our own code by valgrind-free means.
+ASAN_OPTIONS=detect_leaks=0 ctest --preset asan-ubsan -j "$jobs" -LE 'long|golden' "$@"
+./build.sh tsan --with packages-dev.txt
+TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp" ctest --preset tsan -j "$jobs" -L determinism "$@"
+clang-tidy -p build/release --quiet $(git ls-files 'app/*.cc' 'render/*.cc' 'bindings/*.cc')
