@@ -37,7 +37,8 @@ TriangleMesh Revolve(const std::vector<Vector2>& rings, double z_bottom, double 
   const int bottom = num_rings * segments, top = bottom + 1;
   mesh.V.row(bottom) << 0.0, 0.0, z_bottom;
   mesh.V.row(top) << 0.0, 0.0, z_top;
-  mesh.F.resize(2 * segments * num_rings, 3);
+  const int num_faces = 2 * segments * num_rings;
+  mesh.F.resize(num_faces, 3);
   int f = 0;
   for (int s = 0; s < segments; ++s) {
     const int next = (s + 1) % segments;
