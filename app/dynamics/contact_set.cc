@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/core/check.h"
+#include "app/core/error.h"
 #include "app/dynamics/collide.h"
 
 namespace pregrasp {
@@ -43,6 +44,15 @@ CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(marg
   for (const Body& body : scene.bodies) {
     CollisionBody& collision = bodies_.emplace_back();
     collision.pieces = BuildConvexPieces(body.shape);
+    for (const Convex& piece : collision.pieces) {
+      if (piece.kind == ConvexKind::kBox) continue;
+      throw InputError(body.where, body.name + ".shape", "a box, or a union of boxes",
+                       std::string("a ") + ShapeKind(body.shape));
+    }
+    if (collision.pieces.empty()) {
+      throw InputError(body.where, body.name + ".shape", "a box, or a union of boxes",
+                       std::string("a ") + ShapeKind(body.shape));
+    }
     PREGRASP_CHECK(static_cast<int>(collision.pieces.size()) < kMaxPieces, body.name);
     Vector3 low = Vector3::Constant(1e300), high = -low;
     for (const Convex& piece : collision.pieces) {
