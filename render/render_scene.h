@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/core/math.h"
@@ -20,8 +22,8 @@ enum class Shading {
   kOverlay,  ///< flat colour over everything
 };
 
-/// One mesh placed in the world. Meshes are shared and cached on the GPU side by pointer for the
-/// renderer's life.
+/// One mesh placed in the world. Meshes are shared, never change once they are here, and are cached
+/// on the GPU side for as long as they live.
 struct RenderBody {
   std::shared_ptr<const TriangleMesh> mesh;
   RigidTransform X_WB = RigidTransform::Identity();
@@ -29,7 +31,9 @@ struct RenderBody {
   float roughness = 0.6F, metallic = 0.0F;
   Shading shading = Shading::kSolid;
   bool smooth = true;  ///< smooth normals across edges flatter than 40 degrees
-  bool edges = false;  ///< draw the mesh's edges
+  bool edges = false;  ///< draw every edge of the mesh, triangulation included
+  /// One colour a triangle in place of `color`, or none; opacity stays that of `color`.
+  std::vector<Rgba> face_colors;
 };
 
 /// A shaft with a head from `p_W` along `v_W` (metres in the picture).
@@ -46,6 +50,7 @@ struct RenderCone {
   Rgba color;
 };
 
+/// A small ball, lit but without a shadow.
 struct RenderPoint {
   Vector3 p_W = Vector3::Zero();
   float radius = 0.003F;
@@ -55,7 +60,7 @@ struct RenderPoint {
 struct RenderLine {
   std::vector<Vector3> p_W;
   Rgba color;
-  float width_px = 1.5F;
+  float width_px = 1.5F;  ///< in a picture 720 pixels high; scales with the height
 };
 
 /// A text beside a world point with a leader line; labels are moved apart so that none overlap.
@@ -68,15 +73,25 @@ struct RenderLabel {
 struct RenderCamera {
   Vector3 p_WCam{0.6, -0.8, 0.6};
   Vector3 p_WTarget = Vector3::Zero();
-  double fov_deg = 35.0;
+  double fov_deg = 35.0;  ///< vertical, 1 to 120
 };
 
 /// The text of a picture: a card at the top left, a bar along the bottom.
 struct RenderCaption {
   std::string title;
+  /// A line with a tab is a row of a table ("score\t0.87 N"), values aligned and in monospace; one
+  /// with two blanks side by side is set in monospace as it stands; any other is wrapped as prose.
   std::vector<std::string> lines;
   std::string footer;
   double progress = -1.0;  ///< 0 to 1 draws a progress line over the footer; negative draws none
+};
+
+/// What colours mean, at the lower right: a scale, swatches, or both.
+struct RenderLegend {
+  std::string title;
+  std::vector<Rgba> scale;                             ///< colours at even steps, left to right
+  std::vector<std::pair<double, std::string>> ticks;   ///< texts at 0 (left) to 1 along the scale
+  std::vector<std::pair<Rgba, std::string>> swatches;  ///< one a line
 };
 
 /// All that a picture shows. Knows nothing of planning.
@@ -89,9 +104,13 @@ struct RenderScene {
   std::vector<RenderLabel> labels;
   RenderCamera camera;
   RenderCaption caption;
-  double ground_z = 0.0;  ///< height of the ground grid
-  bool ground = true;
-  bool axes = true;  ///< the world frame's axes at the origin
+  RenderLegend legend;
+  /// Towards the light; unset takes one from above the camera's left shoulder, so that shadows fall
+  /// to the right. A film with a moving camera should set it.
+  std::optional<Vector3> to_light_W;
+  bool ground = true;  ///< a floor with a grid of 1 cm, 10 cm or 1 m, told in the picture's corner
+  std::optional<double> ground_z;  ///< its height; unset takes the lowest point of the solid bodies
+  bool axes = true;                ///< the world frame's axes at the origin: x red, y green, z blue
 };
 
 }  // namespace pregrasp

@@ -1,0 +1,108 @@
+#pragma once
+
+// OpenGL 4.5 core through OSMesa, without a loader library: a table of the entry points that the
+// renderer uses, filled once per process. The prototypes give each pointer its type; none of them
+// is called by name.
+#define GL_GLEXT_PROTOTYPES 1
+#include <GL/osmesa.h>
+// osmesa.h brings gl.h; glext.h must follow it.
+#include <GL/glext.h>
+
+namespace pregrasp {
+
+#define PREGRASP_GL_FUNCTIONS(X)       \
+  X(ActiveTexture)                     \
+  X(AttachShader)                      \
+  X(BindBuffer)                        \
+  X(BindBufferBase)                    \
+  X(BindFramebuffer)                   \
+  X(BindTexture)                       \
+  X(BindVertexArray)                   \
+  X(BlendFuncSeparate)                 \
+  X(BlitFramebuffer)                   \
+  X(BufferData)                        \
+  X(CheckFramebufferStatus)            \
+  X(ClearBufferfv)                     \
+  X(ClipControl)                       \
+  X(ColorMask)                         \
+  X(CompileShader)                     \
+  X(CreateProgram)                     \
+  X(CreateShader)                      \
+  X(CullFace)                          \
+  X(DeleteBuffers)                     \
+  X(DeleteFramebuffers)                \
+  X(DeleteProgram)                     \
+  X(DeleteShader)                      \
+  X(DeleteTextures)                    \
+  X(DeleteVertexArrays)                \
+  X(DepthFunc)                         \
+  X(DepthMask)                         \
+  X(Disable)                           \
+  X(DrawArrays)                        \
+  X(DrawArraysInstanced)               \
+  X(DrawBuffer)                        \
+  X(DrawElementsInstancedBaseInstance) \
+  X(Enable)                            \
+  X(EnableVertexAttribArray)           \
+  X(Finish)                            \
+  X(FramebufferTexture)                \
+  X(FramebufferTextureLayer)           \
+  X(GenBuffers)                        \
+  X(GenFramebuffers)                   \
+  X(GenTextures)                       \
+  X(GenVertexArrays)                   \
+  X(GetError)                          \
+  X(GetProgramInfoLog)                 \
+  X(GetProgramiv)                      \
+  X(GetShaderInfoLog)                  \
+  X(GetShaderiv)                       \
+  X(GetString)                         \
+  X(GetUniformBlockIndex)              \
+  X(GetUniformLocation)                \
+  X(LinkProgram)                       \
+  X(PixelStorei)                       \
+  X(ReadBuffer)                        \
+  X(ReadPixels)                        \
+  X(ShaderSource)                      \
+  X(TexBuffer)                         \
+  X(TexParameteri)                     \
+  X(TexStorage2D)                      \
+  X(TexStorage2DMultisample)           \
+  X(TexStorage3D)                      \
+  X(Uniform1i)                         \
+  X(Uniform1f)                         \
+  X(UniformBlockBinding)               \
+  X(UniformMatrix4fv)                  \
+  X(Uniform4fv)                        \
+  X(UseProgram)                        \
+  X(VertexAttribDivisor)               \
+  X(VertexAttribPointer)               \
+  X(Viewport)
+
+struct GlFunctions {
+#define PREGRASP_GL_DECLARE(name) decltype(&::gl##name) name = nullptr;
+  PREGRASP_GL_FUNCTIONS(PREGRASP_GL_DECLARE)
+#undef PREGRASP_GL_DECLARE
+};
+
+/// The table; valid once a GlContext was made. The pointers are the same for every context.
+extern GlFunctions gl;
+
+/// An OSMesa context of its own, with a token colour buffer: pictures are drawn into framebuffer
+/// objects. Current on the thread that called MakeCurrent last.
+class GlContext {
+ public:
+  /// @throws InternalError if Mesa gives no OpenGL 4.5 core context.
+  GlContext();
+  ~GlContext();
+  GlContext(const GlContext&) = delete;
+  GlContext& operator=(const GlContext&) = delete;
+
+  void MakeCurrent();
+
+ private:
+  OSMesaContext context_ = nullptr;
+  unsigned char buffer_[16 * 16 * 4] = {};
+};
+
+}  // namespace pregrasp

@@ -1,0 +1,99 @@
+#include "render/gl_objects.h"
+
+#include "app/core/check.h"
+#include "render/shader_text.h"
+
+namespace pregrasp {
+namespace {
+
+void SetClampedNearest(GLenum target) {
+  gl.TexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl.TexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl.TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl.TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+GLuint Compile(GLenum kind, const std::vector<std::string>& files,
+               const std::vector<std::string>& defines) {
+  std::string text = "#version 450 core\n";
+  for (const std::string& define : defines) text += "#define " + define + "\n";
+  for (const std::string& file : files) text += ShaderText(file);
+  const GLuint shader = gl.CreateShader(kind);
+  const char* source = text.c_str();
+  gl.ShaderSource(shader, 1, &source, nullptr);
+  gl.CompileShader(shader);
+  GLint ok = 0;
+  gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+  if (ok == GL_FALSE) {
+    char log[2048] = "";
+    gl.GetShaderInfoLog(shader, sizeof(log), nullptr, log);
+    PREGRASP_CHECK(ok != GL_FALSE, files.back(), log);
+  }
+  return shader;
+}
+
+}  // namespace
+
+GlBuffer MakeBuffer() {
+  GLuint name = 0;
+  gl.GenBuffers(1, &name);
+  return GlBuffer(name);
+}
+
+GlVertexArray MakeVertexArray() {
+  GLuint name = 0;
+  gl.GenVertexArrays(1, &name);
+  return GlVertexArray(name);
+}
+
+GlFramebuffer MakeFramebuffer() {
+  GLuint name = 0;
+  gl.GenFramebuffers(1, &name);
+  return GlFramebuffer(name);
+}
+
+GlTexture MakeTexture2D(GLenum format, int width, int height, int samples) {
+  GLuint name = 0;
+  gl.GenTextures(1, &name);
+  if (samples > 0) {
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, name);
+    gl.TexStorage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples, format, width, height, GL_TRUE);
+  } else {
+    gl.BindTexture(GL_TEXTURE_2D, name);
+    gl.TexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+    SetClampedNearest(GL_TEXTURE_2D);
+  }
+  return GlTexture(name);
+}
+
+GlTexture MakeTextureArray(GLenum format, int size, int layers) {
+  GLuint name = 0;
+  gl.GenTextures(1, &name);
+  gl.BindTexture(GL_TEXTURE_2D_ARRAY, name);
+  gl.TexStorage3D(GL_TEXTURE_2D_ARRAY, 1, format, size, size, layers);
+  SetClampedNearest(GL_TEXTURE_2D_ARRAY);
+  return GlTexture(name);
+}
+
+GlProgram::GlProgram(const std::vector<std::string>& vertex,
+                     const std::vector<std::string>& fragment,
+                     const std::vector<std::string>& defines)
+    : program_(gl.CreateProgram()) {
+  const GLuint program = program_.get();
+  std::vector<GLuint> shaders = {Compile(GL_VERTEX_SHADER, vertex, defines)};
+  if (!fragment.empty()) shaders.push_back(Compile(GL_FRAGMENT_SHADER, fragment, defines));
+  for (const GLuint shader : shaders) gl.AttachShader(program, shader);
+  gl.LinkProgram(program);
+  for (const GLuint shader : shaders) gl.DeleteShader(shader);
+  GLint ok = 0;
+  gl.GetProgramiv(program, GL_LINK_STATUS, &ok);
+  if (ok == GL_FALSE) {
+    char log[2048] = "";
+    gl.GetProgramInfoLog(program, sizeof(log), nullptr, log);
+    PREGRASP_CHECK(ok != GL_FALSE, vertex.back(), log);
+  }
+  const GLuint block = gl.GetUniformBlockIndex(program, "Frame");
+  if (block != GL_INVALID_INDEX) gl.UniformBlockBinding(program, block, 0);
+}
+
+}  // namespace pregrasp

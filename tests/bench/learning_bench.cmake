@@ -1,1 +1,0 @@
-pregrasp_bench(learning_bench SOURCES learning_bench.cc DEPENDS pregrasp_networks)

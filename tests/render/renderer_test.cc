@@ -1,0 +1,215 @@
+#include "render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <thread>
+
+#include "app/core/error.h"
+#include "render/camera.h"
+#include "render/palette.h"
+#include "tests/render/sample_scenes.h"
+
+namespace pregrasp {
+namespace {
+
+// One renderer for the tests of this file: making its context costs more than a picture.
+Renderer& SharedRenderer() {
+  static Renderer renderer;
+  return renderer;
+}
+
+constexpr RenderConfig kSmall{320, 180, RenderQuality::kNormal};
+
+std::array<int, 3> PixelAt(const Image& image, const Vector2& at) {
+  const std::size_t index =
+      (static_cast<std::size_t>(at.y()) * image.width + static_cast<std::size_t>(at.x())) * 3;
+  return {image.rgb[index], image.rgb[index + 1], image.rgb[index + 2]};
+}
+
+int Brightness(const Image& image, const Vector2& at) {
+  const auto p = PixelAt(image, at);
+  return p[0] + p[1] + p[2];
+}
+
+RenderBody Body(const TriangleMesh& mesh, const Vector3& p, const Rgba& color) {
+  RenderBody body;
+  body.mesh = std::make_shared<TriangleMesh>(mesh);
+  body.X_WB = MakeTransform(Matrix3(Matrix3::Identity()), p);
+  body.color = color;
+  return body;
+}
+
+// A wide table seen from the side and above, with light from the left.
+RenderScene BareTable() {
+  RenderScene scene;
+  scene.bodies.push_back(Body(BoxMesh({1, 1, 0.02}), {0, 0, -0.01}, StaticColor()));
+  scene.axes = false;
+  scene.camera.p_WCam = {0.0, -0.5, 0.5};
+  scene.to_light_W = Vector3(-1, 0, 1);
+  return scene;
+}
+
+Vector2 Pixel(const RenderScene& scene, const Vector3& p_W) {
+  return MakeCameraView(scene.camera, kSmall.width, kSmall.height).Project(p_W).value();
+}
+
+TEST(RendererTest, TheSameSceneGivesTheSameBytes) {
+  for (const RenderQuality quality :
+       {RenderQuality::kDraft, RenderQuality::kNormal, RenderQuality::kStill}) {
+    const RenderConfig config{320, 180, quality};
+    const Image first = SharedRenderer().Render(RulerScene(), config);
+    SharedRenderer().Render(ShelfScene(), kSmall);
+    EXPECT_EQ(SharedRenderer().Render(RulerScene(), config).rgb, first.rgb);
+    Renderer other;
+    EXPECT_EQ(other.Render(RulerScene(), config).rgb, first.rgb);
+  }
+}
+
+TEST(RendererTest, RenderersOnTwoThreadsGiveTheSameBytes) {
+  const Image here = SharedRenderer().Render(RulerScene(), kSmall);
+  Image there[2];
+  std::thread threads[2];
+  for (int i = 0; i < 2; ++i) {
+    threads[i] = std::thread([&there, i] { there[i] = Renderer().Render(RulerScene(), kSmall); });
+  }
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(there[0].rgb, here.rgb);
+  EXPECT_EQ(there[1].rgb, here.rgb);
+}
+
+TEST(RendererTest, ABodyShowsInItsColourWhereItProjects) {
+  RenderScene scene = BareTable();
+  scene.bodies.push_back(Body(BallMesh(0.05), {0.1, 0.05, 0.05}, FingerColor(Finger::kLittle)));
+  const auto p = PixelAt(SharedRenderer().Render(scene, kSmall), Pixel(scene, {0.1, 0.05, 0.05}));
+  EXPECT_GT(p[2], p[0] + 40);
+  EXPECT_GT(p[2], 60);
+}
+
+TEST(RendererTest, ASolidCastsAShadowAndAGhostCastsNone) {
+  RenderScene scene = BareTable();
+  const Vector2 shadowed = Pixel(scene, {0.10, 0, 0});  // to the right of what is put at x = 0
+  const int bare = Brightness(SharedRenderer().Render(scene, kSmall), shadowed);
+  scene.bodies.push_back(Body(BoxMesh({0.02, 0.2, 0.15}), {0, 0, 0.075}, ObjectColor()));
+  const int solid = Brightness(SharedRenderer().Render(scene, kSmall), shadowed);
+  scene.bodies.back().shading = Shading::kGhost;
+  scene.bodies.back().color.a = 0.3F;
+  const int ghost = Brightness(SharedRenderer().Render(scene, kSmall), shadowed);
+  EXPECT_LT(solid, bare - 100);
+  EXPECT_EQ(ghost, bare);
+}
+
+TEST(RendererTest, AThinRulerCastsAThinShadowThatTouchesIt) {
+  RenderScene scene = BareTable();
+  scene.camera.p_WCam = {0.02, -0.12, 0.2};
+  scene.bodies.push_back(Body(BoxMesh({0.03, 0.3, 0.003}), {0, 0, 0.0015}, ObjectColor()));
+  const Image image = SharedRenderer().Render(scene, kSmall);
+  const int lit = Brightness(image, Pixel(scene, {0.030, 0, 0}));
+  // 3 mm high under 45 degrees: shadow from x = 15 to 18 mm.
+  EXPECT_LT(Brightness(image, Pixel(scene, {0.0164, 0, 0})), lit - 80);
+  EXPECT_LT(Brightness(image, Pixel(scene, {0.0164, 0.05, 0})), lit - 80);
+  EXPECT_GT(Brightness(image, Pixel(scene, {0.0200, 0, 0})), lit - 8);
+  EXPECT_GT(Brightness(image, Pixel(scene, {-0.0165, 0, 0})), lit - 8);
+}
+
+TEST(RendererTest, FlatSurfacesHaveNoAcne) {
+  RenderScene scene = BareTable();
+  scene.ground = false;
+  for (const double elevation_deg : {10.0, 20.0, 35.0, 60.0, 85.0}) {
+    const double e = DegToRad(elevation_deg);
+    scene.to_light_W = Vector3(-std::cos(e), 0.3, std::sin(e));
+    const Image image = SharedRenderer().Render(scene, kSmall);
+    // Along a row of the table light falls off smoothly: neighbours differ by a level at most.
+    for (int x = 100; x < 220; ++x) {
+      const Vector2 at(x, 90), next(x + 1, 90);
+      EXPECT_LE(std::abs(Brightness(image, at) - Brightness(image, next)), 3)
+          << elevation_deg << " at " << x;
+    }
+  }
+}
+
+TEST(RendererTest, AnEmptySceneAndEverySizeGiveAPicture) {
+  RenderScene scene;
+  scene.caption.title = "A title";
+  scene.caption.footer = "a footer";
+  scene.labels.push_back({Vector3::Zero(), "origin", ObjectColor()});
+  for (const auto& [width, height] : {std::pair(16, 16), std::pair(17, 200), std::pair(200, 16),
+                                      std::pair(320, 180), std::pair(2500, 40)}) {
+    for (const RenderQuality quality : {RenderQuality::kDraft, RenderQuality::kStill}) {
+      const Image image = SharedRenderer().Render(scene, {width, height, quality});
+      EXPECT_EQ(image.width, width);
+      EXPECT_EQ(image.height, height);
+      EXPECT_EQ(image.rgb.size(), static_cast<std::size_t>(width) * height * 3);
+    }
+  }
+  scene.camera.p_WCam = {0, 0, 1};  // straight down
+  EXPECT_NO_THROW(SharedRenderer().Render(scene, kSmall));
+  scene.camera.p_WCam = {0, 0, -1};  // and up
+  EXPECT_NO_THROW(SharedRenderer().Render(scene, kSmall));
+}
+
+TEST(RendererTest, WrongSizesCamerasAndNumbersAreInputErrors) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(SharedRenderer().Render({}, {15, 180, RenderQuality::kDraft}), InputError);
+  EXPECT_THROW(SharedRenderer().Render({}, {320, 8193, RenderQuality::kDraft}), InputError);
+  RenderScene scene = BareTable();
+  scene.camera.p_WCam = scene.camera.p_WTarget;
+  EXPECT_THROW(SharedRenderer().Render(scene, kSmall), InputError);
+  scene = BareTable();
+  scene.camera.p_WCam.x() = nan;
+  EXPECT_THROW(SharedRenderer().Render(scene, kSmall), InputError);
+  scene = BareTable();
+  scene.camera.fov_deg = 0.0;
+  EXPECT_THROW(SharedRenderer().Render(scene, kSmall), InputError);
+  scene = BareTable();
+  scene.bodies[0].X_WB.translation().z() = nan;
+  EXPECT_THROW(SharedRenderer().Render(scene, kSmall), InputError);
+  scene = BareTable();
+  scene.lines.push_back({{Vector3::Zero(), Vector3(0, nan, 0)}, ObjectColor()});
+  EXPECT_THROW(SharedRenderer().Render(scene, kSmall), InputError);
+  scene = BareTable();
+  scene.bodies[0].face_colors.resize(3);
+  EXPECT_THROW(SharedRenderer().Render(scene, kSmall), InputError);
+}
+
+TEST(RendererTest, AMeshMadeWhereADeadOneWasIsDrawnAnew) {
+  RenderScene scene = BareTable();
+  const Vector3 place(0, 0, 0.03);
+  const Vector2 edge = Pixel(scene, {0.09, 0, 0.03});
+  for (int i = 0; i < 20; ++i) {
+    // Freed and made again, most likely at the same address.
+    const bool large = i % 2 == 0;
+    scene.bodies.resize(1);
+    scene.bodies.push_back(
+        Body(BallMesh(large ? 0.11 : 0.02), place, FingerColor(Finger::kLittle)));
+    const auto p = PixelAt(SharedRenderer().Render(scene, {320, 180, RenderQuality::kDraft}), edge);
+    EXPECT_EQ(p[2] > p[0] + 40, large) << i;
+  }
+}
+
+TEST(RendererTest, RenderersComeAndGo) {
+  Image first;
+  for (int i = 0; i < 6; ++i) {
+    Renderer renderer;
+    Renderer moved = std::move(renderer);
+    const Image image = moved.Render(RulerScene(), {160, 90, RenderQuality::kDraft});
+    if (i == 0) first = image;
+    EXPECT_EQ(image.rgb, first.rgb);
+  }
+  EXPECT_NE(SharedRenderer().description().find("llvmpipe"), std::string::npos);
+}
+
+TEST(RendererTest, TilesJoinWithoutASeam) {
+  RenderScene scene = BareTable();
+  scene.ground = false;
+  scene.camera.p_WCam = {0.0, -1e-3, 0.4};
+  const Image image = SharedRenderer().Render(scene, {2200, 64, RenderQuality::kStill});
+  for (int y = 8; y < 56; ++y) {
+    EXPECT_LE(std::abs(Brightness(image, {2047, y}) - Brightness(image, {2048, y})), 3) << y;
+  }
+}
+
+}  // namespace
+}  // namespace pregrasp
