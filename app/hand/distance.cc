@@ -1,0 +1,175 @@
+#include "app/hand/distance.h"
+
+#include "app/core/check.h"
+#include "app/hand/segment_distance.h"
+
+namespace pregrasp {
+namespace {
+
+constexpr double kMeshSpacing = 2e-3;  // [m], along a capsule's axis
+
+// The radius of a sphere about the shape's own origin.
+double BoundOf(const Box& box) { return 0.5 * box.size.norm(); }
+double BoundOf(const Cylinder& c) { return std::hypot(c.radius, 0.5 * c.height); }
+double BoundOf(const Capsule& c) { return c.radius + 0.5 * c.height; }
+double BoundOf(const Sphere& sphere) { return sphere.radius; }
+
+template <typename Primitive>
+SegmentSample FindLeastOf(const Primitive& primitive, const Vector3& a, const Vector3& b,
+                          double /*cutoff*/) {
+  return FindLeastConvex([&](const Vector3& p) { return CalcDistanceWithGradient(primitive, p); },
+                         a, b);
+}
+
+SegmentSample FindLeastOf(const std::shared_ptr<const SignedDistance>& surface, const Vector3& a,
+                          const Vector3& b, double cutoff) {
+  return FindLeast([&](const Vector3& p) { return surface->CalcWithGradient(p); }, a, b,
+                   kMeshSpacing, cutoff);
+}
+
+// At most the distance, for culling.
+template <typename Primitive>
+double DistanceAt(const Primitive& primitive, const Vector3& p) {
+  return CalcDistance(primitive, p);
+}
+
+// Outside its box the distance to the box will do.
+double DistanceAt(const std::shared_ptr<const SignedDistance>& surface, const Vector3& p) {
+  const double to_box = surface->bounds().exteriorDistance(p);
+  return to_box > 0.0 ? to_box : surface->Calc(p);
+}
+
+}  // namespace
+
+void CalcCapsuleEnds(const HandModel& hand, const HandPose& pose, CapsuleEnds* ends) {
+  for (std::size_t i = 0; i < hand.capsules.size(); ++i) {
+    const HandCapsule& capsule = hand.capsules[i];
+    ends->p_WA[i] = pose.CalcPoint(capsule.link, capsule.p_LA);
+    ends->p_WB[i] = pose.CalcPoint(capsule.link, capsule.p_LB);
+  }
+}
+
+void AddDistanceGradient(const HandModel& hand, const HandPose& pose, const HandDistance& distance,
+                         double weight, HandVector* gradient) {
+  const Vector3 f_W = weight * distance.nhat_W;
+  AddPointGradient(hand, pose, hand.capsules[distance.capsule].link, distance.p_WA, f_W, gradient);
+  if (distance.pair != HandPair::kSelf) return;
+  AddPointGradient(hand, pose, hand.capsules[distance.other].link, distance.p_WB, -f_W, gradient);
+}
+
+HandObstacles::HandObstacles(const std::vector<const Shape*>& shapes) {
+  for (const Shape* shape : shapes) AddParts(*shape, RigidTransform::Identity(), num_bodies_++);
+}
+
+void HandObstacles::AddParts(const Shape& shape, const RigidTransform& X_BP, int body) {
+  if (const auto* whole = std::get_if<Union>(&shape)) {
+    for (const PlacedShape& part : whole->parts) AddParts(part.shape, X_BP * part.X_BP, body);
+    return;
+  }
+  Part part;
+  part.body = body;
+  part.X_BP = X_BP;
+  const auto set = [&](const auto& primitive) {
+    part.shape = primitive;
+    part.bound = BoundOf(primitive);
+  };
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    set(*box);
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    set(*cylinder);
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    set(*capsule);
+  } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    set(*sphere);
+  } else {
+    auto surface = std::make_shared<const SignedDistance>(shape);
+    part.p_PCenter = surface->bounds().center();
+    part.bound = 0.5 * surface->bounds().diagonal().norm();
+    part.shape = std::move(surface);
+  }
+  parts_.push_back(std::move(part));
+}
+
+HandObstacles::Placed HandObstacles::Place(const std::vector<RigidTransform>& X_WB) const {
+  PREGRASP_CHECK(static_cast<int>(X_WB.size()) == num_bodies_, X_WB.size(), num_bodies_);
+  Placed placed;
+  placed.X_WP.reserve(parts_.size());
+  for (const Part& part : parts_) placed.X_WP.push_back(X_WB[part.body] * part.X_BP);
+  return placed;
+}
+
+void HandObstacles::FindNear(const HandModel& hand, const CapsuleEnds& ends, const Placed& placed,
+                             const TouchRule& touch, double influence,
+                             std::vector<HandDistance>* near) const {
+  std::array<bool, kMaxHandCapsules> touches{};
+  for (int f = 0; f < kNumFingers; ++f) touches[hand.tips[f].capsule] = touch.touching[f];
+  const int num_capsules = static_cast<int>(hand.capsules.size());
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    const Part& part = parts_[k];
+    const Matrix3 R_WP = placed.X_WP[k].linear();
+    const Vector3 p_WP = placed.X_WP[k].translation();
+    const HandPair pair = part.body == 0 ? HandPair::kObject : HandPair::kEnvironment;
+    std::visit(
+        [&](const auto& shape) {
+          for (int i = 0; i < num_capsules; ++i) {
+            const double radius = hand.capsules[i].radius;
+            const Vector3 a = R_WP.transpose() * (ends.p_WA[i] - p_WP);
+            const Vector3 b = R_WP.transpose() * (ends.p_WB[i] - p_WP);
+            // A distance changes by at most 1 m per metre, so the middle decides for most.
+            const Vector3 middle = 0.5 * (a + b);
+            const double reach = 0.5 * (b - a).norm() + radius + influence;
+            const double far = reach + part.bound;
+            if ((middle - part.p_PCenter).squaredNorm() > far * far) continue;
+            if (DistanceAt(shape, middle) > reach) continue;
+            const SegmentSample least = FindLeastOf(shape, a, b, radius + influence);
+            HandDistance found;
+            found.distance = least.sample.phi - radius;
+            if (found.distance >= influence) continue;
+            found.touch = part.body == 0 && touches[i];
+            found.pair = pair;
+            found.capsule = i;
+            found.other = part.body;
+            found.p_WA = ends.p_WA[i] + least.t * (ends.p_WB[i] - ends.p_WA[i]);
+            found.nhat_W = R_WP * least.sample.nhat;
+            near->push_back(found);
+          }
+        },
+        part.shape);
+  }
+}
+
+void FindNearSelf(const HandModel& hand, const CapsuleEnds& ends, double influence,
+                  std::vector<HandDistance>* near) {
+  std::array<Vector3, kMaxHandCapsules> middle;
+  std::array<double, kMaxHandCapsules> reach;
+  for (std::size_t i = 0; i < hand.capsules.size(); ++i) {
+    middle[i] = 0.5 * (ends.p_WA[i] + ends.p_WB[i]);
+    reach[i] = 0.5 * (ends.p_WB[i] - ends.p_WA[i]).norm() + hand.capsules[i].radius;
+  }
+  for (const auto& [i, k] : hand.self_pairs) {
+    const double far = reach[i] + reach[k] + influence;
+    if ((middle[i] - middle[k]).squaredNorm() > far * far) continue;
+    double s = 0.0;
+    double t = 0.0;
+    FindNearestOnSegments(ends.p_WA[i], ends.p_WB[i], ends.p_WA[k], ends.p_WB[k], &s, &t);
+    HandDistance found;
+    found.p_WA = ends.p_WA[i] + s * (ends.p_WB[i] - ends.p_WA[i]);
+    found.p_WB = ends.p_WA[k] + t * (ends.p_WB[k] - ends.p_WA[k]);
+    const Vector3 gap = found.p_WA - found.p_WB;
+    const double length = gap.norm();
+    found.distance = length - hand.capsules[i].radius - hand.capsules[k].radius;
+    if (found.distance >= influence) continue;
+    if (length > 1e-9) {
+      found.nhat_W = gap / length;
+    } else {  // crossing axes: apart along their common normal
+      const Vector3 normal = (ends.p_WB[i] - ends.p_WA[i]).cross(ends.p_WB[k] - ends.p_WA[k]);
+      if (normal.squaredNorm() > 0.0) found.nhat_W = normal.normalized();
+    }
+    found.pair = HandPair::kSelf;
+    found.capsule = i;
+    found.other = k;
+    near->push_back(found);
+  }
+}
+
+}  // namespace pregrasp

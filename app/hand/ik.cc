@@ -1,0 +1,230 @@
+#include "app/hand/ik.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/core/check.h"
+#include "app/core/error.h"
+#include "app/core/text.h"
+#include "app/hand/certificate.h"
+#include "app/hand/ik_terms.h"
+
+namespace pregrasp {
+namespace {
+
+using internal::IkPoint;
+using internal::IkTerms;
+
+// SLSQP is worth its time where least squares ends this near to a solution: the square root of its
+// residual sum, in millimetres. Farther away a fresh start is cheaper.
+constexpr double kStallReach = 12.0;
+// Starts spent on telling why there is no solution.
+constexpr int kReasonStarts = 3;
+
+void Require(bool condition, const char* field, const char* expected, double got) {
+  if (!condition) throw InputError("ik", field, expected, FormatDouble(got));
+}
+
+// Of the point as it stands: everything in a result but the search's counts.
+IkResult Describe(const IkTerms& terms, const IkPoint& point) {
+  IkResult result;
+  result.X_WH = point.configuration.X_WH;
+  result.q = point.configuration.q;
+  for (int i = 0; i < terms.num_contacts; ++i) {
+    const int f = static_cast<int>(terms.contacts[i].finger);
+    result.tip_errors[f] = point.tip_errors[i];
+    result.cone_angles[f] = std::acos(std::clamp(point.cosines[i], -1.0, 1.0));
+    result.cone_angle = std::max(result.cone_angle, result.cone_angles[f]);
+  }
+  result.tip_error = point.max_tip_error;
+  result.clearance = point.clearance;
+  result.contact_overlap = point.contact_overlap;
+  for (const HandDistance& near : point.near) {
+    if (near.touch || (result.closest && near.distance >= result.closest->distance)) continue;
+    result.closest = near;
+  }
+  return result;
+}
+
+// How a search went, and its best point.
+struct Search {
+  bool solved = false;
+  IkPoint best;
+  IkMethod method = IkMethod::kNone;
+  int starts = 0, iterations = 0, evaluations = 0, denied = 0;
+};
+
+class Searcher {
+ public:
+  Searcher(const IkTerms& terms, const IkProblem& problem, const HandCertificate* certificate)
+      : terms_(terms), problem_(problem), certificate_(certificate) {}
+
+  Search Run(Rng& rng) {
+    Search search;
+    while (search.starts < terms_.config.max_starts && !search.solved) {
+      point_.configuration = NextStart(search.starts++, rng);
+      Attempt(&search);
+    }
+    return search;
+  }
+
+ private:
+  HandConfiguration NextStart(int index, Rng& rng) {
+    if (problem_.warm_start && index < terms_.config.warm_starts) {
+      if (index == 0) return *problem_.warm_start;
+      return internal::SampleNear(terms_.hand, *problem_.warm_start, rng);
+    }
+    return internal::SampleStart(terms_, rng, &scratch_);
+  }
+
+  void Attempt(Search* search) {
+    const IkConfig& config = terms_.config;
+    search->iterations += internal::SolveLeastSquares(terms_, &point_, &scratch_);
+    IkMethod method = IkMethod::kLeastSquares;
+    const bool exact = internal::IsSolution(terms_, point_, config.tip_target);
+    if (!exact && config.slsqp && point_.task_cost < kStallReach * kStallReach) {
+      const double before = point_.task_cost;
+      search->evaluations += internal::SolveSlsqp(terms_, &point_, &scratch_);
+      if (point_.task_cost < before) method = IkMethod::kSlsqp;
+    }
+    bool solved = internal::IsSolution(terms_, point_, config.tip_tolerance);
+    if (solved && certificate_ != nullptr &&
+        !certificate_->FindCollisions(point_.configuration, problem_.X_WB, terms_.touch, true)
+             .empty()) {
+      ++search->denied;
+      solved = false;
+    }
+    if (solved || search->method == IkMethod::kNone || point_.task_cost < search->best.task_cost) {
+      search->best = point_;
+      search->method = method;
+      search->solved = solved;
+    }
+  }
+
+  const IkTerms& terms_;
+  const IkProblem& problem_;
+  const HandCertificate* certificate_;
+  IkPoint point_, scratch_;
+};
+
+// Which demand fails first: the search again without bodies, then without cones.
+IkStatus FindReason(const HandModel& hand, const IkConfig& config, const IkProblem& problem,
+                    Rng& rng) {
+  IkConfig plain = config;
+  plain.collision = false;
+  plain.max_starts = std::min(config.max_starts, kReasonStarts);
+  const auto solves = [&] {
+    const IkTerms terms(hand, nullptr, plain, problem);
+    return Searcher(terms, problem, nullptr).Run(rng).solved;
+  };
+  if (config.collision && solves()) return IkStatus::kCollision;
+  plain.max_cone_deg = 180.0;
+  return solves() ? IkStatus::kCone : IkStatus::kTipError;
+}
+
+std::vector<const Shape*> ShapesOf(const Scene& scene) {
+  std::vector<const Shape*> shapes;
+  for (const Body& body : scene.bodies) shapes.push_back(&body.shape);
+  return shapes;
+}
+
+}  // namespace
+
+void IkConfig::Validate() const {
+  Require(tip_target > 0.0 && tip_target <= tip_tolerance, "tip_target",
+          "a length above 0, at most tip_tolerance", tip_target);
+  Require(tip_tolerance <= 0.05, "tip_tolerance", "a length of at most 0.05 m", tip_tolerance);
+  Require(max_cone_deg > 0.0 && max_cone_deg <= 180.0, "max_cone_deg", "an angle from 0 to 180",
+          max_cone_deg);
+  Require(contact_depth >= 0.0 && contact_depth <= 0.01, "contact_depth",
+          "a length from 0 to 0.01 m", contact_depth);
+  Require(std::abs(min_clearance) <= 0.02, "min_clearance", "a length within 0.02 m",
+          min_clearance);
+  Require(clearance_buffer >= 0.0, "clearance_buffer", "a length of at least 0", clearance_buffer);
+  Require(influence > std::max(0.0, min_clearance + clearance_buffer), "influence",
+          "a length above min_clearance + clearance_buffer", influence);
+  Require(max_starts >= 1, "max_starts", "at least 1", max_starts);
+  Require(start_candidates >= 1, "start_candidates", "at least 1", start_candidates);
+  Require(max_iterations >= 1, "max_iterations", "at least 1", max_iterations);
+  Require(slsqp_evaluations >= 1, "slsqp_evaluations", "at least 1", slsqp_evaluations);
+  Require(warm_starts >= 1, "warm_starts", "at least 1", warm_starts);
+}
+
+const char* IkStatusName(IkStatus status) {
+  constexpr const char* kNames[] = {"solved",    "tip_error",     "cone",
+                                    "collision", "not_certified", "joint_limits"};
+  return kNames[static_cast<int>(status)];
+}
+
+const char* IkMethodName(IkMethod method) {
+  constexpr const char* kNames[] = {"none", "least_squares", "slsqp"};
+  return kNames[static_cast<int>(method)];
+}
+
+struct IkSolver::Impl {
+  Impl(const HandModel& hand_in, const std::vector<const Shape*>& shapes)
+      : hand(hand_in), obstacles(shapes), certificate(hand_in, shapes) {}
+
+  const HandObstacles* bodies() const { return obstacles.num_bodies() > 0 ? &obstacles : nullptr; }
+
+  HandModel hand;
+  HandObstacles obstacles;
+  HandCertificate certificate;
+};
+
+IkSolver::IkSolver(const HandModel& hand) : IkSolver(hand, std::vector<const Shape*>{}) {}
+IkSolver::IkSolver(const HandModel& hand, const Scene& scene) : IkSolver(hand, ShapesOf(scene)) {}
+IkSolver::IkSolver(const HandModel& hand, const std::vector<const Shape*>& shapes)
+    : impl_(std::make_unique<Impl>(hand, shapes)) {}
+IkSolver::~IkSolver() = default;
+IkSolver::IkSolver(IkSolver&&) noexcept = default;
+
+const HandModel& IkSolver::hand() const { return impl_->hand; }
+
+IkResult IkSolver::Solve(const IkConfig& config, const IkProblem& problem, Rng rng) const {
+  config.Validate();
+  const IkTerms terms(impl_->hand, config.collision ? impl_->bodies() : nullptr, config, problem);
+  const bool certify = config.collision && config.certify;
+  Search search = Searcher(terms, problem, certify ? &impl_->certificate : nullptr).Run(rng);
+  internal::EvaluatePoint(terms, kClearanceSeen, &search.best);
+  IkResult result = Describe(terms, search.best);
+  if (search.solved) {
+    result.status = IkStatus::kSolved;
+  } else if (search.denied > 0) {
+    result.status = IkStatus::kNotCertified;
+  } else {
+    result.status = FindReason(impl_->hand, config, problem, rng);
+  }
+  result.method = search.method;
+  result.starts = search.starts;
+  result.iterations = search.iterations;
+  result.evaluations = search.evaluations;
+  result.denied = search.denied;
+  return result;
+}
+
+IkResult IkSolver::Evaluate(const IkConfig& config, const IkProblem& problem,
+                            const HandConfiguration& configuration) const {
+  config.Validate();
+  const IkTerms terms(impl_->hand, config.collision ? impl_->bodies() : nullptr, config, problem);
+  IkPoint point;
+  point.configuration = configuration;
+  internal::EvaluatePoint(terms, kClearanceSeen, &point);
+  IkResult result = Describe(terms, point);
+  if ((configuration.q.array() < terms.hand.q_lower.array()).any() ||
+      (configuration.q.array() > terms.hand.q_upper.array()).any()) {
+    result.status = IkStatus::kJointLimits;
+  } else if (internal::IsSolution(terms, point, config.tip_tolerance)) {
+    const bool denied =
+        config.collision && config.certify &&
+        !impl_->certificate.FindCollisions(configuration, problem.X_WB, terms.touch, true).empty();
+    result.status = denied ? IkStatus::kNotCertified : IkStatus::kSolved;
+  } else if (point.max_tip_error > config.tip_tolerance) {
+    result.status = IkStatus::kTipError;
+  } else {
+    result.status = point.min_cosine < terms.least_cosine ? IkStatus::kCone : IkStatus::kCollision;
+  }
+  return result;
+}
+
+}  // namespace pregrasp
