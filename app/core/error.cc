@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/core/check.h"
+#include "app/core/text.h"
 
 namespace pregrasp {
 namespace {
@@ -15,10 +16,7 @@ std::string FormatInputError(const std::string& where, const std::string& field,
   if (!field.empty()) line += field + ": ";
   line += "expected " + expected;
   if (!got.empty()) line += ", got " + got;
-  for (char& c : line) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  return line;
+  return OneLine(line);
 }
 
 }  // namespace
@@ -29,6 +27,8 @@ InputError::InputError(std::string where, std::string field, std::string expecte
       field_(std::move(field)),
       expected_(std::move(expected)),
       got_(std::move(got)) {}
+
+InputError::InputError(const std::string& line) : std::runtime_error(OneLine(line)) {}
 
 namespace internal {
 

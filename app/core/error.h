@@ -15,6 +15,9 @@ class InputError : public std::runtime_error {
   /// @param got       what came instead ("-0.2"); may be empty.
   InputError(std::string where, std::string field, std::string expected, std::string got);
 
+  /// A line that is complete already: what Lua's own parser or a script's error() says.
+  explicit InputError(const std::string& line);
+
   const std::string& where() const { return where_; }
   const std::string& field() const { return field_; }
   const std::string& expected() const { return expected_; }

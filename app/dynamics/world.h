@@ -19,9 +19,14 @@ struct StepConfig {
                             ///< sweeps stop [m/s]
   int max_sweeps = 20;      ///< projected Gauss-Seidel sweeps for one movable body
   int max_sweeps_many = 50;  ///< the same for more than two movable bodies
-  double margin =
-      1e-4;  ///< speculative contact distance at rest [m]; the distance covered in a step is added
+  /// Distance at which bodies at rest count as in contact [m]; what a step can cover is added, so
+  /// that bodies stop at a surface and not inside it.
+  double margin = 1e-4;
+  /// Share of the approach speed that an impact above 0.2 m/s gives back, 0 to 1. Nothing bounces
+  /// by default: a pregrasp consists of pushes.
+  double restitution = 0.0;
 
+  /// @throws InputError naming the field.
   void Validate() const;
 };
 
@@ -37,16 +42,17 @@ struct BodyState {
 
 /// One planning finger: a massless point held by a spring to a target, touching the object (body 0)
 /// from outside with a friction cone. The law is the paper's f = -k (p - p_target), with damping,
-/// f.n >= 0, |f_t| <= mu f_n, |f| <= cap.
+/// f.n >= 0, |f_t| <= mu f_n, |f| <= cap; app/dynamics/README.md states it in full.
 struct FingertipState {
   bool on = false;
-  Vector3 p_OC =
-      Vector3::Zero();  ///< contact point on the object's surface; moves when the finger slips
+  /// Contact point on the object's surface; moves when the finger slips. Of a finger that does not
+  /// touch: the surface point nearest to it.
+  Vector3 p_OC = Vector3::Zero();
   Vector3 nhat_O = Vector3::UnitZ();    ///< outward surface normal there
   Vector3 p_WF = Vector3::Zero();       ///< the fingertip point; equals X_WO p_OC while it touches
   Vector3 p_WTarget = Vector3::Zero();  ///< where the spring pulls
   Vector3 f_W = Vector3::Zero();        ///< force on the object over the last step [N]
-  bool touching = false;                ///< pressed on the surface in the last step
+  bool touching = false;                ///< pressed on the surface at the end of the last step
   bool slipping = false;                ///< at the cone's limit in the last step
   double slip = 0.0;                    ///< distance slid over the surface since it was put on [m]
 };
@@ -55,9 +61,10 @@ struct FingertipState {
 struct ContactPoint {
   int body_a = 0, body_b = 0;  ///< scene indices, a < b
   Vector3 p_WC = Vector3::Zero();
-  Vector3 nhat_W = Vector3::UnitZ();  ///< from a to b
-  Vector3 f_W = Vector3::Zero();      ///< force on b [N]
-  double phi = 0.0;                   ///< gap before the step [m], negative when they overlap
+  Vector3 nhat_W = Vector3::UnitZ();   ///< from a to b
+  Vector3 f_W = Vector3::Zero();       ///< force on b [N]
+  double phi = 0.0;                    ///< gap before the step [m], negative when they overlap
+  Vector3 v_slip_W = Vector3::Zero();  ///< velocity of b along a's surface after the step [m/s]
 };
 
 /// Everything that the next step depends on: a copyable value. Restoring a copy, even in the middle
@@ -104,7 +111,7 @@ class World {
   void LiftFinger(WorldState& state, Finger finger) const;
 
   /// One step of dt; each finger that is on pulls towards its p_WTarget, taken as the target at the
-  /// end of the step.
+  /// end of the step. Locks nothing, and allocates nothing once a thread's memory has grown.
   /// @param contacts  filled with the step's contact points if given.
   void Step(WorldState& state, std::vector<ContactPoint>* contacts = nullptr) const;
 

@@ -3,20 +3,17 @@
 #include <memory>
 #include <vector>
 
+#include "app/geometry/bounds.h"
+#include "app/geometry/primitive_distance.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {
 
-/// Signed distance to a surface at one point: `phi` [m], negative inside, and its unit gradient.
-struct DistanceSample {
-  double phi = 0.0;
-  Vector3 nhat = Vector3::UnitZ();
-};
-
 /// The signed distance of one loaded shape in its own frame B: closed form for primitives, a
 /// bounding-volume hierarchy over triangles with angle-weighted pseudonormals for meshes
 /// (Baerentzen and Aanaes 2005), the smallest part for a union (exact outside, a lower bound of
-/// depth inside). Immutable, safe to share between threads.
+/// depth inside). The gradient is a unit vector everywhere, also inside and on medial axes.
+/// Immutable, safe to share between threads.
 class SignedDistance {
  public:
   explicit SignedDistance(const Shape& shape);
@@ -27,8 +24,13 @@ class SignedDistance {
   double Calc(const Vector3& p_B) const;
   DistanceSample CalcWithGradient(const Vector3& p_B) const;
 
-  /// The surface point nearest to p_B, with its outward normal in `nhat`.
+  /// The surface point nearest to p_B, with its outward normal in `nhat` (which may be null). From
+  /// inside overlapping parts of a union it is a point of the outer surface, not always the nearest
+  /// one.
   Vector3 Project(const Vector3& p_B, Vector3* nhat) const;
+
+  /// Of the shape, in B.
+  const AlignedBox& bounds() const;
 
  private:
   struct Impl;
@@ -47,7 +49,7 @@ class EnvironmentDistance {
 
  private:
   std::vector<SignedDistance> distances_;  // of bodies 1, 2, ..
-  std::vector<RigidTransform> X_WB_start_;
+  SignedDistance start_;                   // all of them in W
 };
 
 }  // namespace pregrasp

@@ -26,7 +26,8 @@ struct Body {
   /// Present if and only if the body moves. Uniform density unless the scene gives a centre of mass
   /// or an inertia.
   std::optional<MassProperties> mass_properties;
-  std::string where;  ///< file:line that defines it, for messages
+  bool com_given = false;  ///< the scene named p_BoBcm, so that zero means the frame's origin
+  std::string where;       ///< file:line that defines it, for messages
 
   bool movable() const { return mass_properties.has_value(); }
 };

@@ -19,5 +19,20 @@ TEST(FormatDoubleTest, ReadsBackAsTheSameBits) {
 
 TEST(FormatDoubleTest, IsTheShortestText) { EXPECT_EQ(FormatDouble(0.1), "0.1"); }
 
+TEST(OneLineTest, HasNoControlCharactersAndCutsBetweenCharacters) {
+  EXPECT_EQ(OneLine("a\nb\t\x1b[31mc"), "a b  [31mc");
+  EXPECT_EQ(OneLine(std::string(700, 'x')), std::string(600, 'x') + "..");
+  EXPECT_EQ(OneLine(std::string(599, 'x') + "\u00e4\u00e4"), std::string(599, 'x') + "..");
+}
+
+TEST(FindNearestTest, FindsTypingErrorsAndNothingFarFetched) {
+  const std::vector<std::string> keys = {"friction", "mass", "name", "shape"};
+  EXPECT_EQ(FindNearest("fricton", keys), "friction");
+  EXPECT_EQ(FindNearest("msas", keys), "mass");
+  EXPECT_EQ(FindNearest("shapes", keys), "shape");
+  EXPECT_EQ(FindNearest("weight", keys), "");
+  EXPECT_EQ(FindNearest("", keys), "");
+}
+
 }  // namespace
 }  // namespace pregrasp

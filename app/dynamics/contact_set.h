@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "app/dynamics/convex.h"
+#include "app/dynamics/manifold.h"
+#include "app/dynamics/motion.h"
+#include "app/scene/scene.h"
+
+namespace pregrasp {
+
+/// The contact between two convex pieces of two bodies, in one step.
+struct Contact {
+  int movable_a = -1, movable_b = -1;  ///< movable index, -1 for a fixed body
+  int body_a = 0, body_b = 0;          ///< scene index, a < b
+  double friction = 0.0;
+  std::uint64_t key = 0;  ///< names the pieces; a point's feature is added to it
+  Manifold manifold;      ///< normal from a to b
+};
+
+/// The collision shapes of a scene and the search for contacts between them. Immutable.
+class CollisionScene {
+ public:
+  /// Memory that FindContacts reuses from step to step.
+  struct Scratch {
+    std::vector<PlacedConvex> pieces;
+    struct Bounds {
+      Vector3 low, high;
+      double margin;
+    };
+    std::vector<Bounds> bounds;
+  };
+
+  CollisionScene(const Scene& scene, double margin);
+
+  /// Largest distance of a point of body `body` from p_B (in its frame) [m].
+  double CalcReach(int body, const Vector3& p_B) const;
+
+  /// All contacts with a movable body, in an order that depends on the scene alone. Pieces count as
+  /// in contact when they are nearer than the margin plus the distance they can cover in `dt`, so
+  /// that a body stops at the surface instead of inside it.
+  /// @param motions  one per movable, velocities as predicted without contacts.
+  void FindContacts(const std::vector<BodyKernel>& kernels, const std::vector<BodyMotion>& motions,
+                    double dt, Scratch* scratch, std::vector<Contact>* contacts) const;
+
+ private:
+  struct CollisionBody {
+    int movable = -1;
+    Vector3 p_BBox = Vector3::Zero();  ///< centre of the bounding box in the body's frame
+    Vector3 half = Vector3::Zero();
+    std::vector<Convex> pieces;
+    int first_placed = 0;  ///< into placed_ for a fixed body, into Scratch::pieces for a movable
+  };
+  struct Pair {
+    int a, b;
+    double friction;
+  };
+
+  void PlaceMovables(const std::vector<BodyKernel>& kernels, const std::vector<BodyMotion>& motions,
+                     double dt, Scratch* scratch) const;
+  void CollidePair(const Pair& pair, double margin, const Scratch& scratch,
+                   std::vector<Contact>* contacts) const;
+
+  double margin_;
+  std::vector<CollisionBody> bodies_;
+  std::vector<PlacedConvex> placed_;           ///< pieces of fixed bodies
+  std::vector<Scratch::Bounds> fixed_bounds_;  ///< by scene index; movables unset
+  std::vector<Pair> pairs_;
+  int num_movable_pieces_ = 0;
+};
+
+}  // namespace pregrasp

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "app/core/math.h"
+#include "app/scene/shape.h"
+
+namespace pregrasp {
+
+enum class ConvexKind : std::uint8_t { kBox, kPolytope, kCylinder, kCapsule };
+
+/// A bounded convex polyhedron: faces are planes with their corners in counter-clockwise order seen
+/// from outside.
+struct Polytope {
+  struct Face {
+    Vector3 nhat = Vector3::UnitZ();  ///< outward
+    double offset = 0.0;              ///< nhat . p of its points [m]
+    int first = 0, count = 0;         ///< range in `corners`
+  };
+  std::vector<Vector3> vertices;
+  std::vector<Face> faces;
+  std::vector<int> corners;  ///< vertex indices, face after face
+
+  /// The corner of face `f` numbered `i`, counted around it.
+  const Vector3& corner(const Face& face, int i) const { return vertices[corners[face.first + i]]; }
+};
+
+/// One convex piece of a body's shape, as contact generation sees it: in its own frame P, whose
+/// origin is the centre of the box that bounds it.
+struct Convex {
+  ConvexKind kind = ConvexKind::kBox;
+  RigidTransform X_BP = RigidTransform::Identity();
+  Vector3 half = Vector3::Zero();            ///< half extents of the bounding box in P [m]
+  double radius = 0.0;                       ///< cylinder and capsule (a sphere has no height) [m]
+  double half_height = 0.0;                  ///< along z, without caps [m]
+  std::shared_ptr<const Polytope> polytope;  ///< of a box too
+};
+
+/// The convex pieces of a loaded shape.
+/// @throws InputError if the shape holds a piece without volume.
+std::vector<Convex> BuildConvexPieces(const Shape& shape);
+
+/// A piece at its pose in the world, within one step.
+struct PlacedConvex {
+  const Convex* convex = nullptr;
+  Matrix3 R_WP = Matrix3::Identity();
+  Vector3 p_WP = Vector3::Zero();
+};
+
+}  // namespace pregrasp

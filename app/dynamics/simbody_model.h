@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/dynamics/motion.h"
+#include "app/dynamics/world.h"
+#include "app/scene/scene.h"
+
+namespace pregrasp {
+
+/// The scene's movable bodies as a Simbody multibody system, with one State to work in. The only
+/// place in app/dynamics that knows Simbody. Not to be shared between threads while in use.
+class SimbodyModel {
+ public:
+  /// @throws InputError for mass properties that no body can have.
+  explicit SimbodyModel(const Scene& scene);
+  ~SimbodyModel();
+
+  int num_bodies() const;
+
+  /// Mass properties of movable `i`, as Simbody holds them.
+  MassProperties GetMassProperties(int i) const;
+
+  /// The movables' poses and velocities (zero) in the system's default state.
+  std::vector<BodyState> GetDefaultState() const;
+
+  /// Kinetic plus potential energy [J].
+  double CalcEnergy(const std::vector<BodyState>& bodies, const Vector3& gravity);
+
+  /// Begins a step: takes poses and velocities, adds gravity's impulse, and gives the motions that
+  /// the contacts start from.
+  void Predict(const std::vector<BodyState>& bodies, const std::vector<BodyKernel>& kernels,
+               const Vector3& gravity, double dt, std::vector<BodyMotion>* motions);
+
+  /// Ends the step that Predict began: applies the impulses and moves the bodies.
+  void Advance(const std::vector<BodyImpulse>& impulses, double dt, std::vector<BodyState>* bodies);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pregrasp

@@ -1,0 +1,245 @@
+#include "app/dynamics/world.h"
+
+#include <mutex>
+
+#include "app/core/check.h"
+#include "app/core/error.h"
+#include "app/core/text.h"
+#include "app/dynamics/contact_set.h"
+#include "app/dynamics/contact_solver.h"
+#include "app/dynamics/fingertip.h"
+#include "app/dynamics/motion.h"
+#include "app/dynamics/simbody_model.h"
+#include "app/geometry/signed_distance.h"
+
+namespace pregrasp {
+namespace {
+
+// What a step needs besides the state. Its content never outlives a step; it is kept per thread for
+// its memory.
+struct StepScratch {
+  std::vector<BodyMotion> motions;
+  CollisionScene::Scratch collision;
+  std::vector<Contact> contacts;
+  ContactSolver solver;
+  std::vector<BodyImpulse> impulses;
+};
+
+StepScratch& GetThreadScratch() {
+  thread_local StepScratch scratch;
+  return scratch;
+}
+
+void RequireRange(const char* field, double value, double low, double high) {
+  if (!(value >= low && value <= high)) {
+    throw InputError("dynamics", field,
+                     "a number from " + FormatDouble(low) + " to " + FormatDouble(high),
+                     FormatDouble(value));
+  }
+}
+
+// v and w from the state, gravity's impulse added.
+void Predict(const BodyKernel& kernel, const BodyState& body, const Vector3& gravity, double dt,
+             BodyMotion* motion) {
+  motion->R_WB = body.q_WB.toRotationMatrix();
+  motion->R_WP = motion->R_WB * kernel.R_BP;
+  const Vector3 c_W = motion->R_WB * kernel.p_BoBcm;
+  motion->p_WB = body.p_WB;
+  motion->p_WBcm = body.p_WB + c_W;
+  motion->w_WB = body.w_WB;
+  motion->v_WBcm = body.v_WB + body.w_WB.cross(c_W) + dt * gravity;
+}
+
+// Moves a body to the end of the step. The orientation follows the angular velocity halfway through
+// the step, free of torque (second order, where the plain Euler step gains energy while tumbling);
+// the angular momentum in W is kept exactly.
+void Advance(const BodyKernel& kernel, const BodyMotion& motion, const Vector6& y, const Vector6& z,
+             double dt, BodyState* body) {
+  const Vector3 inv_I = kernel.inv_sqrt_I_P.cwiseProduct(kernel.inv_sqrt_I_P);
+  const Vector3 L_P = kernel.I_P.cwiseProduct(kernel.inv_sqrt_I_P).cwiseProduct(y.tail<3>());
+  const Vector3 w_P = kernel.inv_sqrt_I_P.cwiseProduct(y.tail<3>());
+  const Vector3 w_P_mid = w_P - 0.5 * dt * inv_I.cwiseProduct(w_P.cross(L_P)) +
+                          kernel.inv_sqrt_I_P.cwiseProduct(z.tail<3>());
+  const Vector3 turn = 0.5 * dt * (motion.R_WP * w_P_mid);
+  const Quaternion& q = body->q_WB;
+  const Quaternion dq = Quaternion(0.0, turn.x(), turn.y(), turn.z()) * q;
+  body->q_WB.coeffs() = (q.coeffs() + dq.coeffs()).normalized();
+
+  const Matrix3 R_WB = body->q_WB.toRotationMatrix();
+  const Matrix3 R_WP = R_WB * kernel.R_BP;
+  const Vector3 L_W = motion.R_WP * L_P;
+  body->w_WB = R_WP * inv_I.cwiseProduct(R_WP.transpose() * L_W);
+  const Vector3 v_WBcm = kernel.inv_sqrt_mass * y.head<3>();
+  const Vector3 c_W = R_WB * kernel.p_BoBcm;
+  body->p_WB = motion.p_WBcm + dt * (v_WBcm + kernel.inv_sqrt_mass * z.head<3>()) - c_W;
+  body->v_WB = v_WBcm - body->w_WB.cross(c_W);
+}
+
+}  // namespace
+
+void StepConfig::Validate() const {
+  RequireRange("dt", dt, 1e-6, 0.02);
+  RequireRange("tolerance", tolerance, 0.0, 1.0);
+  RequireRange("max_sweeps", max_sweeps, 1, 1e6);
+  RequireRange("max_sweeps_many", max_sweeps_many, 1, 1e6);
+  RequireRange("margin", margin, 0.0, 0.01);
+  RequireRange("restitution", restitution, 0.0, 1.0);
+}
+
+struct World::Impl {
+  Scene scene;
+  StepConfig config;
+  CollisionScene collision;
+  SignedDistance object_surface;
+  FingertipLaw law;
+  std::vector<BodyKernel> kernels;
+  WorldState initial;
+
+  // Simbody models that no thread is using at the moment.
+  std::mutex mutex;
+  std::vector<std::unique_ptr<SimbodyModel>> models;
+
+  Impl(const Scene& scene_in, const StepConfig& config_in)
+      : scene(scene_in),
+        config(config_in),
+        collision(scene, config.margin),
+        object_surface(scene.object().shape) {
+    auto model = std::make_unique<SimbodyModel>(scene);
+    for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) {
+      if (!scene.bodies[b].movable()) continue;
+      const MassProperties mass = model->GetMassProperties(static_cast<int>(kernels.size()));
+      kernels.push_back(MakeBodyKernel(b, mass.mass, mass.p_BoBcm, mass.I_BBcm,
+                                       collision.CalcReach(b, mass.p_BoBcm)));
+    }
+    law = FingertipLaw(scene.fingertips, kernels.at(0).mass);
+    initial.bodies = model->GetDefaultState();
+    models.push_back(std::move(model));
+  }
+
+  std::unique_ptr<SimbodyModel> TakeModel() {
+    {
+      const std::lock_guard lock(mutex);
+      if (!models.empty()) {
+        auto model = std::move(models.back());
+        models.pop_back();
+        return model;
+      }
+    }
+    return std::make_unique<SimbodyModel>(scene);
+  }
+
+  void ReturnModel(std::unique_ptr<SimbodyModel> model) {
+    const std::lock_guard lock(mutex);
+    models.push_back(std::move(model));
+  }
+
+  // Contacts and fingers, from scratch->motions to the solver's velocities.
+  void SolveContacts(const WorldState& state, StepScratch* scratch) const {
+    collision.FindContacts(kernels, scratch->motions, config.dt, &scratch->collision,
+                           &scratch->contacts);
+    scratch->solver.SetContacts(config, kernels, scratch->motions, scratch->contacts, state.cache);
+    for (int f = 0; f < kNumPlanningFingers; ++f) {
+      if (!state.fingers[f].on) continue;
+      scratch->solver.AddFinger(
+          kernels[0], scratch->motions[0],
+          MakeFingerRows(law, state.fingers[f], f, scratch->motions[0], config.dt));
+    }
+    scratch->solver.Solve(config);
+  }
+
+  // Everything but the bodies, once they have moved.
+  void EndStep(const StepScratch& scratch, WorldState* state,
+               std::vector<ContactPoint>* contacts) const {
+    const ContactSolver& solver = scratch.solver;
+    solver.SaveImpulses(scratch.contacts, &state->cache);
+    const RigidTransform X_WO = state->bodies[0].X_WB();
+    for (const FingerRows& rows : solver.fingers()) {
+      AdvanceFinger(law, object_surface, rows, solver.CalcObjectVelocity(rows), X_WO, config.dt,
+                    &state->fingers[rows.finger]);
+    }
+    ++state->step;
+    state->t += config.dt;
+    if (contacts == nullptr) return;
+    contacts->clear();
+    for (const PointRows& row : solver.points()) {
+      const Contact& contact = scratch.contacts[row.contact];
+      contacts->push_back({contact.body_a, contact.body_b, contact.manifold.points[row.point].p_W,
+                           contact.manifold.nhat_W, solver.impulse_W(row) / config.dt, row.phi,
+                           solver.CalcSlipVelocity(row)});
+    }
+  }
+};
+
+World::World(const Scene& scene, const StepConfig& config) {
+  ValidateScene(scene);
+  config.Validate();
+  impl_ = std::make_unique<Impl>(scene, config);
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+
+const Scene& World::scene() const { return impl_->scene; }
+const StepConfig& World::config() const { return impl_->config; }
+int World::num_movables() const { return static_cast<int>(impl_->kernels.size()); }
+int World::body_index(int movable) const { return impl_->kernels.at(movable).body; }
+
+WorldState World::InitialState() const { return impl_->initial; }
+
+std::vector<RigidTransform> World::GetPoses(const WorldState& state) const {
+  std::vector<RigidTransform> X_WB;
+  X_WB.reserve(impl_->scene.bodies.size());
+  for (const Body& body : impl_->scene.bodies) X_WB.push_back(body.X_WB);
+  for (int i = 0; i < num_movables(); ++i) X_WB[body_index(i)] = state.bodies[i].X_WB();
+  return X_WB;
+}
+
+void World::PutFinger(WorldState& state, Finger finger, const Vector3& p_OC) const {
+  const int f = static_cast<int>(finger);
+  PREGRASP_CHECK(f < kNumPlanningFingers, FingerName(finger));
+  PlaceFinger(impl_->object_surface, state.bodies[0].X_WB(), p_OC, &state.fingers[f]);
+}
+
+void World::LiftFinger(WorldState& state, Finger finger) const {
+  const int f = static_cast<int>(finger);
+  PREGRASP_CHECK(f < kNumPlanningFingers, FingerName(finger));
+  state.fingers[f] = {};
+}
+
+void World::Step(WorldState& state, std::vector<ContactPoint>* contacts) const {
+  const Impl& impl = *impl_;
+  StepScratch& scratch = GetThreadScratch();
+  const int n = num_movables();
+  scratch.motions.resize(n);
+  for (int i = 0; i < n; ++i) {
+    Predict(impl.kernels[i], state.bodies[i], impl.scene.gravity, impl.config.dt,
+            &scratch.motions[i]);
+  }
+  impl.SolveContacts(state, &scratch);
+  for (int i = 0; i < n; ++i) {
+    Advance(impl.kernels[i], scratch.motions[i], scratch.solver.velocity(i),
+            scratch.solver.correction(i), impl.config.dt, &state.bodies[i]);
+  }
+  impl.EndStep(scratch, &state, contacts);
+}
+
+void World::StepWithSimbody(WorldState& state, std::vector<ContactPoint>* contacts) const {
+  const Impl& impl = *impl_;
+  StepScratch& scratch = GetThreadScratch();
+  std::unique_ptr<SimbodyModel> model = impl_->TakeModel();
+  model->Predict(state.bodies, impl.kernels, impl.scene.gravity, impl.config.dt, &scratch.motions);
+  impl.SolveContacts(state, &scratch);
+  scratch.solver.SumImpulses(scratch.motions, scratch.contacts, &scratch.impulses);
+  model->Advance(scratch.impulses, impl.config.dt, &state.bodies);
+  impl_->ReturnModel(std::move(model));
+  impl.EndStep(scratch, &state, contacts);
+}
+
+double World::CalcEnergy(const WorldState& state) const {
+  std::unique_ptr<SimbodyModel> model = impl_->TakeModel();
+  const double energy = model->CalcEnergy(state.bodies, impl_->scene.gravity);
+  impl_->ReturnModel(std::move(model));
+  return energy;
+}
+
+}  // namespace pregrasp

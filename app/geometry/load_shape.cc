@@ -1,0 +1,190 @@
+#include "app/geometry/load_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "app/core/error.h"
+#include "app/geometry/bounds.h"
+#include "app/geometry/mass_properties.h"
+#include "app/geometry/mesh_topology.h"
+#include "app/geometry/read_mesh.h"
+
+namespace pregrasp {
+namespace {
+
+constexpr double kMaxSize = 100.0;  // [m], as for primitives; a larger mesh is a unit error
+
+std::string Count(int count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+AlignedBox BoundsOfPoints(const MatrixX3& V) {
+  return {Vector3(V.colwise().minCoeff()), Vector3(V.colwise().maxCoeff())};
+}
+
+void RequireSaneSize(const MatrixX3& V, const std::string& name, const std::string& where,
+                     const std::string& field) {
+  const double size = BoundsOfPoints(V).sizes().maxCoeff();
+  if (size > kMaxSize) {
+    throw InputError(where, field, "a shape at most 100 m long (scale = 0.001 for millimetres)",
+                     fmt::format("{}, which is {:.6g} m long", name, size));
+  }
+}
+
+void RequireFinitePoints(const MatrixX3& V, const std::string& name, const std::string& where,
+                         const std::string& field) {
+  for (int v = 0; v < V.rows(); ++v) {
+    if (!V.row(v).allFinite()) {
+      throw InputError(where, field, "finite coordinates",
+                       fmt::format("{}, whose vertex {} is not finite", name, v + 1));
+    }
+  }
+}
+
+void RequireClosed(const TriangleMesh& mesh, const std::string& name, const std::string& where,
+                   const std::string& field) {
+  const MeshDefects defects = FindDefects(mesh);
+  if (defects.open_edges > 0) {
+    throw InputError(where, field, "a closed mesh",
+                     fmt::format("{}, which has {}", name,
+                                 Count(defects.open_edges, "open edge", "open edges")));
+  }
+  if (defects.crowded_edges > 0) {
+    throw InputError(where, field, "a mesh with two triangles at each edge",
+                     fmt::format("{}, which has more at {}", name,
+                                 Count(defects.crowded_edges, "edge", "edges")));
+  }
+}
+
+// The faces of component `c` as a mesh; it keeps all vertices.
+TriangleMesh ExtractComponent(const TriangleMesh& mesh, const std::vector<int>& label, int c) {
+  TriangleMesh part;
+  part.V = mesh.V;
+  part.F.resize(std::count(label.begin(), label.end(), c), 3);
+  int next = 0;
+  for (int f = 0; f < mesh.F.rows(); ++f) {
+    if (label[f] == c) part.F.row(next++) = mesh.F.row(f);
+  }
+  return part;
+}
+
+// Turns each component outward, or inward when an odd number of others lies around it.
+void OrientOutward(TriangleMesh& mesh) {
+  const std::vector<int> label = LabelComponents(mesh);
+  const int count = 1 + *std::max_element(label.begin(), label.end());
+  std::vector<TriangleMesh> parts;
+  std::vector<AlignedBox> bounds;
+  parts.reserve(count);
+  for (int c = 0; c < count; ++c) {
+    parts.push_back(ExtractComponent(mesh, label, c));
+    AlignedBox box;
+    for (int f = 0; f < parts[c].F.rows(); ++f) {
+      for (int i = 0; i < 3; ++i) box.extend(Vector3(mesh.V.row(parts[c].F(f, i))));
+    }
+    bounds.push_back(box);
+  }
+  std::vector<bool> turn(count);
+  for (int c = 0; c < count; ++c) {
+    const Vector3 p = mesh.V.row(parts[c].F(0, 0));
+    int around = 0;
+    for (int d = 0; d < count; ++d) {
+      if (d == c || !bounds[d].contains(bounds[c])) continue;
+      if (std::abs(CalcWindingNumber(parts[d], p)) > 0.5) ++around;
+    }
+    const bool outward_now = CalcVolume(parts[c]) > 0.0;
+    turn[c] = outward_now != (around % 2 == 0);
+  }
+  for (int f = 0; f < mesh.F.rows(); ++f) {
+    if (turn[label[f]]) std::swap(mesh.F(f, 1), mesh.F(f, 2));
+  }
+}
+
+struct Loader {
+  const std::filesystem::path& directory;
+  const std::string& where;
+  std::string field;
+
+  template <typename Reader>
+  auto Read(const std::string& name, Reader&& read) const {
+    try {
+      return read();
+    } catch (const UnreadableFile& error) {
+      throw InputError(where, field, error.expected,
+                       error.got.empty() ? name : name + ", " + error.got);
+    }
+  }
+
+  void operator()(Mesh& mesh) const {
+    const std::string name = '"' + mesh.file + '"';
+    const TriangleMesh raw = Read(name, [&] { return ReadTriangles(directory / mesh.file); });
+    mesh.mesh = RepairMesh({mesh.scale * raw.V, raw.F}, name, where, field);
+  }
+  void operator()(Cloud& cloud) const {
+    const std::string name = '"' + cloud.file + '"';
+    throw InputError(where, field, "a mesh: clouds cannot be read yet", name);
+  }
+  void operator()(Union& whole) const {
+    for (std::size_t i = 0; i < whole.parts.size(); ++i) {
+      std::visit(Loader{directory, where, fmt::format("{}[{}]", field, i + 1)},
+                 whole.parts[i].shape);
+    }
+  }
+  template <typename Primitive>
+  void operator()(Primitive&) const {}
+};
+
+void FillMassProperties(Body& body) {
+  MassProperties& given = *body.mass_properties;
+  const MassProperties uniform = CalcMassProperties(body.shape, given.mass);
+  if (!body.com_given && given.p_BoBcm.isZero(0.0)) given.p_BoBcm = uniform.p_BoBcm;
+  if (given.I_BBcm.isZero(0.0)) given.I_BBcm = uniform.I_BBcm;
+}
+
+}  // namespace
+
+TriangleMesh RepairMesh(const TriangleMesh& raw, const std::string& name, const std::string& where,
+                        const std::string& field) {
+  RequireFinitePoints(raw.V, name, where, field);
+  RequireSaneSize(raw.V, name, where, field);
+  const double size = BoundsOfPoints(raw.V).diagonal().norm();
+  TriangleMesh mesh = WeldVertices(raw, 0.0);
+  if (mesh.F.rows() > 0 && FindDefects(mesh).open_edges > 0) {
+    // Formats without shared vertices may round the same corner in two ways.
+    TriangleMesh welded = WeldVertices(raw, 1e-6 * size);
+    if (FindDefects(welded).open_edges == 0) mesh = std::move(welded);
+  }
+  if (mesh.F.rows() == 0) {
+    throw InputError(where, field, "a closed mesh", name + ", whose triangles have no area");
+  }
+  RequireClosed(mesh, name, where, field);
+  if (!OrientConsistently(mesh)) {
+    throw InputError(where, field, "a mesh with an inside and an outside",
+                     name + ", whose surface has one side only");
+  }
+  SplitPinchedVertices(mesh);
+  OrientOutward(mesh);
+  // A sheet folded back on itself is closed and holds nothing.
+  if (CalcVolume(mesh) < 1e-9 * size * size * size) {
+    throw InputError(where, field, "a mesh that encloses a volume",
+                     fmt::format("{}, which encloses {:.3g} m^3", name, CalcVolume(mesh)));
+  }
+  return mesh;
+}
+
+void LoadShape(Shape& shape, const std::filesystem::path& directory, const std::string& where,
+               const std::string& field) {
+  std::visit(Loader{directory, where, field}, shape);
+}
+
+void LoadShapes(Scene& scene, const std::filesystem::path& directory) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    Body& body = scene.bodies[b];
+    const std::string field = b == 0 ? "object.shape" : fmt::format("environment[{}].shape", b);
+    LoadShape(body.shape, directory, body.where, field);
+    if (body.movable()) FillMassProperties(body);
+  }
+}
+
+}  // namespace pregrasp

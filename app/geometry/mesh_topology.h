@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "app/scene/shape.h"
+
+namespace pregrasp {
+
+/// For each face the face across its edge i, from F(f, i) to F(f, i + 1); -1 where there is none or
+/// more than one. #F entries.
+std::vector<std::array<int, 3>> FindNeighbours(const TriangleMesh& mesh);
+
+/// What keeps a mesh from being a closed two-manifold.
+struct MeshDefects {
+  int open_edges = 0;     ///< edges with one triangle
+  int crowded_edges = 0;  ///< edges with more than two triangles
+  int turned_edges = 0;   ///< edges whose two triangles run along them the same way
+
+  bool closed() const { return open_edges == 0 && crowded_edges == 0 && turned_edges == 0; }
+};
+MeshDefects FindDefects(const TriangleMesh& mesh);
+
+/// Merges vertices that lie within `tolerance` [m] of one another (the one with the smallest index
+/// stays, 0 merges equal ones), and drops faces that lose a corner and vertices without a face.
+TriangleMesh WeldVertices(const TriangleMesh& mesh, double tolerance);
+
+/// Component (through shared edges) of each face, numbered in the order of their first face.
+std::vector<int> LabelComponents(const TriangleMesh& mesh);
+
+/// Turns faces so that neighbours agree, each component as most of its faces are now. Needs a mesh
+/// without open or crowded edges. Returns false for a surface with one side only.
+bool OrientConsistently(TriangleMesh& mesh);
+
+/// Gives each fan of faces around a vertex a vertex of its own, where several meet in one.
+void SplitPinchedVertices(TriangleMesh& mesh);
+
+/// Signed volume, positive when faces are outward [m^3].
+double CalcVolume(const TriangleMesh& mesh);
+double CalcArea(const TriangleMesh& mesh);
+
+/// Vertices minus edges plus faces: 2 for a ball, 0 for a ring; closed meshes only.
+int CalcEulerNumber(const TriangleMesh& mesh);
+
+/// How often the surface winds around p: about 1 inside, 0 outside (generalised winding number).
+double CalcWindingNumber(const TriangleMesh& mesh, const Vector3& p);
+
+/// Moves every vertex by X_AB.
+TriangleMesh Transformed(const TriangleMesh& mesh, const RigidTransform& X_AB);
+
+/// Adds `other` as a component of its own.
+void AppendMesh(TriangleMesh& mesh, const TriangleMesh& other);
+
+}  // namespace pregrasp

@@ -1,0 +1,142 @@
+#include "app/geometry/read_mesh.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "app/geometry/read_ply.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxBytes = 256ULL << 20U;
+constexpr std::size_t kMaxTriangles = 2'000'000;
+constexpr const char* kFormats = ".ply, .obj, .stl, .off, .gltf, .glb, .dae, .3ds";
+
+std::string Extension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void RequireReadable(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw UnreadableFile("a file", "which does not exist");
+  if (!fs::is_regular_file(status)) throw UnreadableFile("a file", "which is not a regular file");
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  if (error) throw UnreadableFile("a readable file", "which cannot be read");
+  if (bytes == 0) throw UnreadableFile("a file with a shape in it", "which is empty");
+  if (bytes > kMaxBytes) {
+    throw UnreadableFile("a file of at most 256 MB", fmt::format("which has {} MB", bytes >> 20U));
+  }
+  const std::string extension = Extension(file);
+  if (extension.empty() ||
+      (std::string(kFormats) + ",").find(extension + ",") == std::string::npos) {
+    throw UnreadableFile(std::string("one of ") + kFormats, "");
+  }
+}
+
+// The importer owns the scene that it returns. Materials, textures and normals are left out: their
+// loss lets equal positions be one vertex.
+const aiScene* Import(Assimp::Importer& importer, const fs::path& file) {
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_LINE | aiPrimitiveType_POINT);
+  importer.SetPropertyInteger(
+      AI_CONFIG_PP_RVC_FLAGS,
+      aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
+          aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+          aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
+  std::string problem;
+  try {
+    const aiScene* scene = importer.ReadFile(
+        file.string(), aiProcess_ValidateDataStructure | aiProcess_RemoveComponent |
+                           aiProcess_Triangulate | aiProcess_SortByPType |
+                           aiProcess_PreTransformVertices);
+    if (scene != nullptr) return scene;
+    problem = importer.GetErrorString();
+  } catch (const std::exception& error) {
+    problem = error.what();
+  }
+  throw UnreadableFile("a mesh that assimp can read",
+                       problem.empty() ? "which it cannot" : "of which it says: " + problem);
+}
+
+PlyContent ReadPly(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  try {
+    return ParsePly(bytes);
+  } catch (const std::runtime_error& error) {
+    throw UnreadableFile("a PLY file", std::string("which ") + error.what());
+  }
+}
+
+void RequireTriangles(std::size_t count) {
+  if (count == 0) throw UnreadableFile("a mesh with triangles", "which has none");
+  if (count > kMaxTriangles) {
+    throw UnreadableFile(fmt::format("at most {} triangles", kMaxTriangles),
+                         fmt::format("which has {}", count));
+  }
+}
+
+TriangleMesh ReadPlyTriangles(const fs::path& file) {
+  PlyContent content = ReadPly(file);
+  RequireTriangles(static_cast<std::size_t>(content.F.rows()));
+  return {std::move(content.V), std::move(content.F)};
+}
+
+}  // namespace
+
+TriangleMesh ReadTriangles(const fs::path& file) {
+  RequireReadable(file);
+  if (Extension(file) == ".ply") return ReadPlyTriangles(file);
+  Assimp::Importer importer;
+  const aiScene* scene = Import(importer, file);
+  std::size_t vertices = 0, triangles = 0;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    vertices += scene->mMeshes[m]->mNumVertices;
+    triangles += scene->mMeshes[m]->mNumFaces;
+  }
+  RequireTriangles(triangles);
+  TriangleMesh result;
+  result.V.resize(static_cast<int>(vertices), 3);
+  result.F.resize(static_cast<int>(triangles), 3);
+  int v = 0, f = 0;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene->mMeshes[m];
+    const int first = v;
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const aiVector3D& p = mesh.mVertices[i];
+      result.V.row(v++) << p.x, p.y, p.z;
+    }
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const aiFace& face = mesh.mFaces[i];
+      if (face.mNumIndices != 3) continue;  // points and lines of a mixed mesh
+      for (int k = 0; k < 3; ++k) {
+        if (face.mIndices[k] >= mesh.mNumVertices) {
+          throw UnreadableFile("faces that name vertices of the file", "in which one does not");
+        }
+        result.F(f, k) = first + static_cast<int>(face.mIndices[k]);
+      }
+      ++f;
+    }
+  }
+  result.F.conservativeResize(f, 3);
+  RequireTriangles(static_cast<std::size_t>(f));
+  return result;
+}
+
+}  // namespace pregrasp

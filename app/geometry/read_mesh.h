@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "app/scene/shape.h"
+
+namespace pregrasp {
+
+/// Why a file gave no triangles or points: the two halves of an InputError, whose place the caller
+/// knows.
+struct UnreadableFile : std::runtime_error {
+  UnreadableFile(const std::string& expected_text, const std::string& got_text)
+      : std::runtime_error(expected_text), expected(expected_text), got(got_text) {}
+  std::string expected;
+  std::string got;  ///< follows the file's name: "which does not exist"
+};
+
+/// All triangles of a file as they are: PLY through our own reader, else through assimp, with the
+/// poses of the file's node tree applied. At most 256 MB and 2 million triangles.
+/// @throws UnreadableFile
+TriangleMesh ReadTriangles(const std::filesystem::path& file);
+
+}  // namespace pregrasp

@@ -1,0 +1,224 @@
+#include "app/geometry/signed_distance.h"
+
+#include <limits>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "app/core/check.h"
+#include "app/geometry/mesh_distance.h"
+
+namespace pregrasp {
+namespace {
+
+using Leaf = std::variant<Box, Cylinder, Capsule, Sphere, std::unique_ptr<const MeshDistance>>;
+
+// The parts of a union, nested ones flattened. A part farther than the best so far by its bounding
+// box cannot be the smallest.
+class PartsDistance {
+ public:
+  void Add(const Shape& shape, const RigidTransform& X_BP);
+
+  double Calc(const Vector3& p_B) const;
+  DistanceSample CalcWithGradient(const Vector3& p_B) const;
+  Vector3 Project(const Vector3& p_B, Vector3* nhat) const;
+
+ private:
+  struct Part {
+    RigidTransform X_PB;
+    AlignedBox bounds_B;
+    Leaf leaf;
+  };
+  DistanceSample CalcPart(const Part& part, const Vector3& p_B) const;
+
+  std::vector<Part> parts_;
+};
+
+double CalcLeaf(const Leaf& leaf, const Vector3& p) {
+  switch (leaf.index()) {
+    case 0:
+      return CalcDistance(*std::get_if<Box>(&leaf), p);
+    case 1:
+      return CalcDistance(*std::get_if<Cylinder>(&leaf), p);
+    case 2:
+      return CalcDistance(*std::get_if<Capsule>(&leaf), p);
+    case 3:
+      return CalcDistance(*std::get_if<Sphere>(&leaf), p);
+    default:
+      return (*std::get_if<4>(&leaf))->Calc(p);
+  }
+}
+
+DistanceSample CalcLeafWithGradient(const Leaf& leaf, const Vector3& p) {
+  switch (leaf.index()) {
+    case 0:
+      return CalcDistanceWithGradient(*std::get_if<Box>(&leaf), p);
+    case 1:
+      return CalcDistanceWithGradient(*std::get_if<Cylinder>(&leaf), p);
+    case 2:
+      return CalcDistanceWithGradient(*std::get_if<Capsule>(&leaf), p);
+    case 3:
+      return CalcDistanceWithGradient(*std::get_if<Sphere>(&leaf), p);
+    default:
+      return (*std::get_if<4>(&leaf))->CalcWithGradient(p);
+  }
+}
+
+Leaf MakeLeaf(const Shape& shape) {
+  if (const auto* box = std::get_if<Box>(&shape)) return *box;
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return *cylinder;
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return *capsule;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return *sphere;
+  if (const auto* mesh = std::get_if<Mesh>(&shape))
+    return std::make_unique<MeshDistance>(mesh->mesh);
+  const auto* cloud = std::get_if<Cloud>(&shape);
+  PREGRASP_CHECK(cloud != nullptr, shape.index());
+  return std::make_unique<MeshDistance>(cloud->mesh);
+}
+
+void PartsDistance::Add(const Shape& shape, const RigidTransform& X_BP) {
+  if (const auto* whole = std::get_if<Union>(&shape)) {
+    for (const PlacedShape& part : whole->parts) Add(part.shape, X_BP * part.X_BP);
+    return;
+  }
+  parts_.push_back({X_BP.inverse(), CalcBounds(shape, X_BP), MakeLeaf(shape)});
+}
+
+double PartsDistance::Calc(const Vector3& p_B) const {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Part& part : parts_) {
+    const double reach = std::max(best, 0.0);
+    if (part.bounds_B.squaredExteriorDistance(p_B) > reach * reach) continue;
+    best = std::min(best, CalcLeaf(part.leaf, part.X_PB * p_B));
+  }
+  return best;
+}
+
+DistanceSample PartsDistance::CalcPart(const Part& part, const Vector3& p_B) const {
+  DistanceSample sample = CalcLeafWithGradient(part.leaf, part.X_PB * p_B);
+  sample.nhat = part.X_PB.linear().transpose() * sample.nhat;
+  return sample;
+}
+
+DistanceSample PartsDistance::CalcWithGradient(const Vector3& p_B) const {
+  DistanceSample best{std::numeric_limits<double>::infinity(), Vector3::UnitZ()};
+  for (const Part& part : parts_) {
+    const double reach = std::max(best.phi, 0.0);
+    if (part.bounds_B.squaredExteriorDistance(p_B) > reach * reach) continue;
+    const DistanceSample sample = CalcPart(part, p_B);
+    if (sample.phi < best.phi) best = sample;
+  }
+  return best;
+}
+
+// From outside the smallest part's nearest point is exact. From inside, each part's nearest surface
+// point that no other part covers is a candidate; where all are covered, steps out of the deepest
+// part lead to the outer surface.
+Vector3 PartsDistance::Project(const Vector3& p_B, Vector3* nhat) const {
+  constexpr double kOnSurface = 1e-9;  // [m]
+  const DistanceSample here = CalcWithGradient(p_B);
+  Vector3 q_B = p_B - here.phi * here.nhat;
+  Vector3 normal = here.nhat;
+  if (here.phi < 0.0) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const Part& part : parts_) {
+      if (!part.bounds_B.contains(p_B)) continue;
+      const DistanceSample sample = CalcPart(part, p_B);
+      if (sample.phi > 0.0 || -sample.phi >= best) continue;
+      const Vector3 candidate = p_B - sample.phi * sample.nhat;
+      if (Calc(candidate) < -kOnSurface) continue;
+      best = -sample.phi;
+      q_B = candidate;
+      normal = sample.nhat;
+    }
+    constexpr int kMaxSteps = 64;
+    for (int i = 0; i < kMaxSteps && best == std::numeric_limits<double>::infinity(); ++i) {
+      const DistanceSample sample = CalcWithGradient(q_B);
+      if (sample.phi >= -kOnSurface) break;
+      q_B -= sample.phi * sample.nhat;
+      normal = sample.nhat;
+    }
+  }
+  if (nhat != nullptr) *nhat = normal;
+  return q_B;
+}
+
+// All bodies but the object, at their start in W.
+Union GatherEnvironment(const Scene& scene) {
+  Union whole;
+  for (std::size_t b = 1; b < scene.bodies.size(); ++b) {
+    whole.parts.push_back({scene.bodies[b].shape, scene.bodies[b].X_WB});
+  }
+  return whole;
+}
+
+}  // namespace
+
+struct SignedDistance::Impl {
+  bool is_union = false;
+  Leaf leaf;            // of any other shape
+  PartsDistance parts;  // of a union
+  AlignedBox bounds;
+};
+
+SignedDistance::SignedDistance(const Shape& shape) {
+  auto impl = std::make_unique<Impl>();
+  impl->is_union = std::holds_alternative<Union>(shape);
+  if (impl->is_union) {
+    impl->parts.Add(shape, RigidTransform::Identity());
+  } else {
+    impl->leaf = MakeLeaf(shape);
+  }
+  impl->bounds = CalcBounds(shape);
+  impl_ = std::move(impl);
+}
+
+SignedDistance::~SignedDistance() = default;
+SignedDistance::SignedDistance(SignedDistance&&) noexcept = default;
+SignedDistance& SignedDistance::operator=(SignedDistance&&) noexcept = default;
+
+const AlignedBox& SignedDistance::bounds() const { return impl_->bounds; }
+
+double SignedDistance::Calc(const Vector3& p_B) const {
+  return impl_->is_union ? impl_->parts.Calc(p_B) : CalcLeaf(impl_->leaf, p_B);
+}
+
+DistanceSample SignedDistance::CalcWithGradient(const Vector3& p_B) const {
+  return impl_->is_union ? impl_->parts.CalcWithGradient(p_B)
+                         : CalcLeafWithGradient(impl_->leaf, p_B);
+}
+
+Vector3 SignedDistance::Project(const Vector3& p_B, Vector3* nhat) const {
+  if (impl_->is_union) return impl_->parts.Project(p_B, nhat);
+  const DistanceSample sample = CalcLeafWithGradient(impl_->leaf, p_B);
+  if (nhat != nullptr) *nhat = sample.nhat;
+  return p_B - sample.phi * sample.nhat;
+}
+
+EnvironmentDistance::EnvironmentDistance(const Scene& scene) : start_(GatherEnvironment(scene)) {
+  for (std::size_t b = 1; b < scene.bodies.size(); ++b) {
+    distances_.emplace_back(scene.bodies[b].shape);
+  }
+}
+
+DistanceSample EnvironmentDistance::Calc(const Vector3& p_W) const {
+  return start_.CalcWithGradient(p_W);
+}
+
+DistanceSample EnvironmentDistance::Calc(const Vector3& p_W,
+                                         const std::vector<RigidTransform>& X_WB) const {
+  PREGRASP_CHECK(X_WB.size() == distances_.size() + 1, X_WB.size(), distances_.size());
+  DistanceSample best{std::numeric_limits<double>::infinity(), Vector3::UnitZ()};
+  for (std::size_t i = 0; i < distances_.size(); ++i) {
+    const RigidTransform& X_WP = X_WB[i + 1];
+    const Vector3 p_P = X_WP.linear().transpose() * (p_W - X_WP.translation());
+    const double reach = std::max(best.phi, 0.0);
+    if (distances_[i].bounds().squaredExteriorDistance(p_P) > reach * reach) continue;
+    DistanceSample sample = distances_[i].CalcWithGradient(p_P);
+    if (!(sample.phi < best.phi)) continue;
+    best = {sample.phi, X_WP.linear() * sample.nhat};
+  }
+  return best;
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,275 @@
+#include "app/graph/contact_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "app/core/check.h"
+#include "app/core/error.h"
+#include "app/core/text.h"
+
+namespace pregrasp {
+namespace {
+
+// Contacts of one finger on one triangle: drawn once, used by every node with that triangle.
+struct TriangleSamples {
+  std::vector<Placement::Contact> contacts;
+  std::vector<bool> occluded;
+};
+
+std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& mesh, int samples,
+                                             const SignedDistance& shape,
+                                             const PlacementScorer& context, std::uint64_t seed) {
+  std::vector<TriangleSamples> all(mesh.F.rows());
+  for (int t = 0; t < static_cast<int>(all.size()); ++t) {
+    Rng rng(seed, RngStream::kGraph, static_cast<std::uint32_t>(finger),
+            static_cast<std::uint32_t>(t));
+    for (int s = 0; s < samples; ++s) {
+      const double u = rng.Uniform();
+      const double v = rng.Uniform();
+      all[t].contacts.push_back(ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape));
+      all[t].occluded.push_back(context.IsOccluded(finger, all[t].contacts.back()));
+    }
+  }
+  return all;
+}
+
+Placement PlaceOne(Finger finger, const Placement::Contact& contact) {
+  Placement placement;
+  placement.fingers[static_cast<int>(finger)] = contact;
+  return placement;
+}
+
+double Mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double CountOccluded(const TriangleSamples& samples) {
+  return static_cast<double>(std::count(samples.occluded.begin(), samples.occluded.end(), true));
+}
+
+// The sampled contacts of both fingers, by triangle, and what every node's scores are made from.
+class NodeSampler {
+ public:
+  NodeSampler(const TriangleMesh& mesh, const ContactGraphConfig& config,
+              const SignedDistance& shape, const PlacementScorer& context, std::uint64_t seed)
+      : config_(config), context_(context) {
+    for (const Finger finger : {Finger::kThumb, Finger::kIndex}) {
+      samples_[static_cast<int>(finger)] =
+          SampleTriangles(finger, mesh, config.samples, shape, context, seed);
+    }
+  }
+
+  // Mean scores of one finger alone, by triangle.
+  std::vector<double> ScoreAlone(Finger finger, const PlacementScorer& scorer) const {
+    const auto& triangles = samples_[static_cast<int>(finger)];
+    std::vector<double> means;
+    for (const TriangleSamples& triangle : triangles) {
+      std::vector<Placement> placements;
+      for (const auto& contact : triangle.contacts) {
+        placements.push_back(PlaceOne(finger, contact));
+      }
+      std::vector<double> scores = scorer.Score(placements);
+      ClearOccluded(scorer, triangle, triangle, scores);
+      means.push_back(Mean(scores));
+    }
+    return means;
+  }
+
+  // Mean scores of both fingers for the nodes of one thumb triangle, by index triangle.
+  std::vector<double> ScoreBoth(int thumb, const PlacementScorer& scorer) const {
+    const auto& indices = samples_[1];
+    std::vector<Placement> placements;
+    for (const TriangleSamples& index : indices) {
+      for (int s = 0; s < config_.samples; ++s) {
+        Placement placement = PlaceOne(Finger::kIndex, index.contacts[s]);
+        placement.fingers[0] = samples_[0][thumb].contacts[s];
+        placements.push_back(placement);
+      }
+    }
+    const std::vector<double> all = scorer.Score(placements);
+    PREGRASP_CHECK(all.size() == placements.size(), all.size(), placements.size());
+    std::vector<double> means;
+    for (std::size_t index = 0; index < indices.size(); ++index) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(index * config_.samples);
+      std::vector<double> scores(begin, begin + config_.samples);
+      for (int s = 0; s < config_.samples; ++s) {
+        const Placement& placement = placements[index * config_.samples + s];
+        const double gap = (placement.thumb().p_OC - placement.index().p_OC).norm();
+        if (gap < config_.min_tip_distance) scores[s] = 0.0;
+      }
+      ClearOccluded(scorer, samples_[0][thumb], indices[index], scores);
+      means.push_back(Mean(scores));
+    }
+    return means;
+  }
+
+  double OccludedShare(int thumb, int index) const {
+    return (CountOccluded(samples_[0][thumb]) + CountOccluded(samples_[1][index])) /
+           (2.0 * config_.samples);
+  }
+
+ private:
+  // In context, a fingertip that cannot be where it is asked to be is worth nothing.
+  void ClearOccluded(const PlacementScorer& scorer, const TriangleSamples& a,
+                     const TriangleSamples& b, std::vector<double>& scores) const {
+    if (&scorer != &context_) return;
+    for (int s = 0; s < config_.samples; ++s) {
+      if (a.occluded[s] || b.occluded[s]) scores[s] = 0.0;
+    }
+  }
+
+  const ContactGraphConfig& config_;
+  const PlacementScorer& context_;
+  std::array<std::vector<TriangleSamples>, kNumPlanningFingers> samples_;
+};
+
+// Node ids from the best `score` to the worst; ties by id.
+std::vector<int> OrderBy(const std::vector<ContactNode>& nodes, double ContactNode::*score) {
+  std::vector<int> order(nodes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return nodes[a].*score > nodes[b].*score; });
+  return order;
+}
+
+}  // namespace
+
+void ContactGraphConfig::Validate() const {
+  if (samples < 1 || samples > 1000) {
+    throw InputError("", "samples", "a whole number from 1 to 1000", std::to_string(samples));
+  }
+  if (!(top_percent > 0.0 && top_percent <= 100.0)) {
+    throw InputError("", "top_percent", "a number above 0 and at most 100",
+                     FormatDouble(top_percent));
+  }
+  if (!(min_tip_distance >= 0.0 && std::isfinite(min_tip_distance))) {
+    throw InputError("", "min_tip_distance", "a length of at least 0 m",
+                     FormatDouble(min_tip_distance));
+  }
+}
+
+ContactGraph::ContactGraph(TriangleMesh mesh, const ContactGraphConfig& config)
+    : mesh_(std::move(mesh)), config_(config) {
+  config.Validate();
+  const int count = num_triangles();
+  nodes_.reserve(static_cast<std::size_t>(count) * count);
+  for (int thumb = 0; thumb < count; ++thumb) {
+    for (int index = 0; index < count; ++index) {
+      ContactNode node;
+      node.id = thumb * count + index;
+      node.thumb = thumb;
+      node.index = index;
+      nodes_.push_back(node);
+    }
+  }
+}
+
+void ContactGraph::Score(const SignedDistance& shape, const PlacementScorer& context,
+                         const PlacementScorer& free, std::uint64_t seed) {
+  const NodeSampler sampler(mesh_, config_, shape, context, seed);
+  const auto thumb_c = sampler.ScoreAlone(Finger::kThumb, context);
+  const auto thumb_n = sampler.ScoreAlone(Finger::kThumb, free);
+  const auto index_c = sampler.ScoreAlone(Finger::kIndex, context);
+  const auto index_n = sampler.ScoreAlone(Finger::kIndex, free);
+  for (int thumb = 0; thumb < num_triangles(); ++thumb) {
+    const auto both_c = sampler.ScoreBoth(thumb, context);
+    const auto both_n = sampler.ScoreBoth(thumb, free);
+    for (int index = 0; index < num_triangles(); ++index) {
+      ContactNode& node = nodes_[thumb * num_triangles() + index];
+      node.s_c = (thumb_c[thumb] + index_c[index] + both_c[index]) / 3.0;
+      node.s_n = (thumb_n[thumb] + index_n[index] + both_n[index]) / 3.0;
+      node.occluded = sampler.OccludedShare(thumb, index);
+    }
+  }
+  order_c_ = OrderBy(nodes_, &ContactNode::s_c);
+  order_n_ = OrderBy(nodes_, &ContactNode::s_n);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    nodes_[order_c_[i]].rank_c = static_cast<int>(i) + 1;
+    nodes_[order_n_[i]].rank_n = static_cast<int>(i) + 1;
+    nodes_[i].initial = nodes_[i].kept = false;
+  }
+  kept_.clear();
+  neighbors_.clear();
+  stage_ = GraphStage::kScored;
+}
+
+int ContactGraph::NumKeptEach() const {
+  const double share = config_.top_percent / 100.0 * static_cast<double>(nodes_.size());
+  return std::clamp(static_cast<int>(std::ceil(share - 1e-9)), 1, static_cast<int>(nodes_.size()));
+}
+
+void ContactGraph::PruneByContext() {
+  PREGRASP_CHECK(stage_ == GraphStage::kScored, static_cast<int>(stage_));
+  for (int i = 0; i < NumKeptEach(); ++i) {
+    nodes_[order_c_[i]].initial = nodes_[order_c_[i]].kept = true;
+  }
+  stage_ = GraphStage::kPrunedContext;
+}
+
+void ContactGraph::PruneByFree() {
+  PREGRASP_CHECK(stage_ == GraphStage::kPrunedContext, static_cast<int>(stage_));
+  for (int i = 0; i < NumKeptEach(); ++i) nodes_[order_n_[i]].kept = true;
+  for (const ContactNode& node : nodes_) {
+    if (node.kept) kept_.push_back(node.id);
+  }
+  stage_ = GraphStage::kPrunedFree;
+}
+
+void ContactGraph::Connect() {
+  PREGRASP_CHECK(stage_ == GraphStage::kPrunedFree, static_cast<int>(stage_));
+  neighbors_.assign(nodes_.size(), {});
+  for (const int a : kept_) {
+    for (const int b : kept_) {
+      if (nodes_[a].thumb == nodes_[b].thumb || nodes_[a].index == nodes_[b].index) {
+        neighbors_[a].push_back(b);
+      }
+    }
+  }
+  stage_ = GraphStage::kConnected;
+}
+
+void ContactGraph::Prune() {
+  if (stage_ == GraphStage::kMeshed) {
+    throw InputError("", "prune", "a graph that has been scored", "one without scores");
+  }
+  if (stage_ == GraphStage::kScored) PruneByContext();
+  if (stage_ == GraphStage::kPrunedContext) PruneByFree();
+  if (stage_ == GraphStage::kPrunedFree) Connect();
+}
+
+const std::vector<int>& ContactGraph::neighbors(int id) const {
+  PREGRASP_CHECK(stage_ == GraphStage::kConnected, static_cast<int>(stage_));
+  return neighbors_.at(id);
+}
+
+int ContactGraph::num_edges() const {
+  int count = 0;
+  for (const std::vector<int>& ids : neighbors_) count += static_cast<int>(ids.size());
+  // Each edge between two nodes is in both lists, each loop in one.
+  return (count + static_cast<int>(kept_.size())) / 2;
+}
+
+NodeReason ContactGraph::Why(int id) const {
+  if (id < 0 || id >= static_cast<int>(nodes_.size())) {
+    throw InputError("", "node", "an id from 0 to " + std::to_string(nodes_.size() - 1),
+                     std::to_string(id));
+  }
+  NodeReason reason;
+  reason.node = nodes_[id];
+  reason.num_nodes = static_cast<int>(nodes_.size());
+  if (stage_ == GraphStage::kMeshed) return reason;
+  reason.num_kept_each = NumKeptEach();
+  reason.threshold_c = nodes_[order_c_[reason.num_kept_each - 1]].s_c;
+  reason.threshold_n = nodes_[order_n_[reason.num_kept_each - 1]].s_n;
+  const bool by_context = reason.node.rank_c <= reason.num_kept_each;
+  const bool by_free = reason.node.rank_n <= reason.num_kept_each;
+  using Verdict = NodeReason::Verdict;
+  reason.verdict = by_context && by_free ? Verdict::kKeptByBoth
+                   : by_context          ? Verdict::kKeptByContext
+                   : by_free             ? Verdict::kKeptByFree
+                                         : Verdict::kPruned;
+  return reason;
+}
+
+}  // namespace pregrasp

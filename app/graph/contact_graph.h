@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "app/core/rng.h"
+#include "app/graph/placement.h"
+
+namespace pregrasp {
+
+struct ContactGraphConfig {
+  /// Fingertip placements drawn for each of thumb only, index only and both (the paper's five).
+  int samples = 5;
+  /// The paper's M: a node is kept if it is in the top M percent by s_c or by s_n.
+  double top_percent = 5.0;
+  /// Two tips closer than this cannot both touch [m]; such placements score 0 (design: 15 mm).
+  double min_tip_distance = 0.015;
+
+  void Validate() const;
+};
+
+/// How far Algorithm 1 of the paper has come on a graph.
+enum class GraphStage {
+  kMeshed,         ///< nodes exist, without scores
+  kScored,         ///< s_c and s_n are known
+  kPrunedContext,  ///< V_c chosen by s_c
+  kPrunedFree,     ///< and the others by s_n
+  kConnected,      ///< edges built: the graph is complete
+};
+
+/// A contact state: the thumb somewhere on one triangle, the index finger on another (or the same).
+struct ContactNode {
+  int id = 0;  ///< thumb * #triangles + index; never changes
+  int thumb = 0, index = 0;
+  double s_c = 0.0;  ///< mean score in the context of the surroundings
+  double s_n = 0.0;  ///< mean score without surroundings
+  int rank_c = 0;    ///< 1 is the best by s_c; ties by id
+  int rank_n = 0;    ///< the same by s_n
+  double occluded =
+      0.0;               ///< share of the sampled contacts where a fingertip cannot be at the start
+  bool initial = false;  ///< in V_c: may start a path
+  bool kept = false;     ///< in V
+};
+
+/// Why a node is in the graph or not: the numbers that decided.
+struct NodeReason {
+  enum class Verdict { kNotScored, kKeptByContext, kKeptByFree, kKeptByBoth, kPruned };
+  Verdict verdict = Verdict::kNotScored;
+  ContactNode node;
+  int num_nodes = 0;
+  int num_kept_each = 0;     ///< how many nodes the top M percent are
+  double threshold_c = 0.0;  ///< the lowest s_c that was kept
+  double threshold_n = 0.0;  ///< the lowest s_n that was kept
+};
+
+/// The contact-state graph (paper, section "Contact state graph", Algorithm 1) as a value. Each
+/// function below takes it one step further, so that a copy is a point in time to come back to.
+class ContactGraph {
+ public:
+  /// All ordered pairs of triangles of `mesh` as nodes, without scores.
+  ContactGraph(TriangleMesh mesh, const ContactGraphConfig& config);
+
+  /// Draws `samples` placements a scenario on each node and takes the mean scores: s_c by `context`
+  /// (surroundings at the start, occluded points removed; an occluded placement scores 0), s_n by
+  /// `free` (no surroundings). The placements of one finger alone are shared by all nodes with that
+  /// triangle. @param shape  the object's true surface.
+  void Score(const SignedDistance& shape, const PlacementScorer& context,
+             const PlacementScorer& free, std::uint64_t seed);
+
+  /// Keeps the top M percent by s_c as V_c; needs kScored.
+  void PruneByContext();
+  /// Adds the top M percent by s_n; needs kPrunedContext.
+  void PruneByFree();
+  /// Connects kept nodes that share a triangle, and each with itself; needs kPrunedFree.
+  void Connect();
+  /// The three steps above that are still to do. @throws InputError before Score.
+  void Prune();
+
+  GraphStage stage() const { return stage_; }
+  const TriangleMesh& mesh() const { return mesh_; }
+  const ContactGraphConfig& config() const { return config_; }
+  const std::vector<ContactNode>& nodes() const { return nodes_; }
+  int num_triangles() const { return static_cast<int>(mesh_.F.rows()); }
+
+  /// Ids of the kept nodes, ascending.
+  const std::vector<int>& kept() const { return kept_; }
+  /// Ids of the kept nodes that `id` (kept) is connected to, itself included, ascending.
+  const std::vector<int>& neighbors(int id) const;
+  /// Number of undirected edges, loops included.
+  int num_edges() const;
+
+  /// @throws InputError if there is no node `id`.
+  NodeReason Why(int id) const;
+
+ private:
+  int NumKeptEach() const;
+
+  TriangleMesh mesh_;
+  ContactGraphConfig config_;
+  GraphStage stage_ = GraphStage::kMeshed;
+  std::vector<ContactNode> nodes_;
+  std::vector<int> order_c_, order_n_;  // node ids, best first
+  std::vector<int> kept_;
+  std::vector<std::vector<int>> neighbors_;  // by node id; empty for pruned nodes
+};
+
+}  // namespace pregrasp

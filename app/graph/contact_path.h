@@ -1,0 +1,65 @@
+#pragma once
+
+#include <vector>
+
+#include "app/graph/contact_graph.h"
+
+namespace pregrasp {
+
+/// A sequence of contact states, one a contact stage (paper, section "Trajectory optimization").
+struct ContactPath {
+  std::vector<int> nodes;     ///< node ids, first to last
+  double score = 0.0;         ///< s_c(v_1) + sum over i > 1 of s_n(v_i)
+  std::vector<double> terms;  ///< its summands
+  int rank = 0;               ///< 1 is the best of all paths
+};
+
+/// All paths of a connected graph, best first, found one at a time. A copyable value: copying it
+/// remembers how far the enumeration has come.
+///
+/// The best completion of every partial path is known beforehand (dynamic programming over the
+/// remaining stages), so each pop yields the next path in order and costs a logarithm; the paths
+/// themselves, millions of them, are never listed (Lawler 1972). Paths of equal score come in an
+/// order that depends on the graph alone.
+class PathSearch {
+ public:
+  /// @param stages  nodes in a path, 1 to 8. The graph is copied. @throws InputError unless it is
+  ///                connected and `stages` is in range.
+  PathSearch(const ContactGraph& graph, int stages);
+
+  /// The next best path; false when there is none left.
+  bool Next(ContactPath* path);
+
+  int num_found() const { return num_found_; }
+  /// How many paths there are in all (as a double: it may be large).
+  double num_paths() const;
+
+ private:
+  // A choice at one depth: the `rank`-th best successor in `options`.
+  struct Choice {
+    int node;
+    double value;  // its own term plus that of its best completion
+  };
+  // A path whose first `depth` choices are fixed by a parent and whose last one is `rank` in the
+  // successors of the node before it; completed by best choices.
+  struct Candidate {
+    double score;
+    std::vector<int> ranks;  // one a stage
+    std::vector<int> nodes;
+    int depth;  // the first stage whose rank may still be raised
+  };
+  static bool IsWorse(const Candidate& a, const Candidate& b);
+
+  const std::vector<Choice>& Options(int stage, int previous) const;
+  Candidate Complete(std::vector<int> ranks, int depth) const;
+  double Term(int stage, int node) const;
+
+  ContactGraph graph_;
+  int stages_;
+  int num_found_ = 0;
+  std::vector<Choice> first_;                            // choices of the first stage
+  std::vector<std::vector<std::vector<Choice>>> after_;  // [stages left after it][node id]
+  std::vector<Candidate> heap_;
+};
+
+}  // namespace pregrasp

@@ -1,0 +1,22 @@
+#include "app/graph/placement.h"
+
+#include <cmath>
+
+namespace pregrasp {
+
+Placement::Contact ContactOnTriangle(const TriangleMesh& mesh, int t, const Vector3& w,
+                                     const SignedDistance& shape) {
+  Vector3 p_O = Vector3::Zero();
+  for (int i = 0; i < 3; ++i) p_O += w[i] * mesh.V.row(mesh.F(t, i)).transpose();
+  Placement::Contact contact;
+  contact.on = true;
+  contact.p_OC = shape.Project(p_O, &contact.nhat_O);
+  return contact;
+}
+
+Vector3 BarycentricFromSquare(double u, double v) {
+  const double root = std::sqrt(u);
+  return {1.0 - root, root * (1.0 - v), root * v};
+}
+
+}  // namespace pregrasp

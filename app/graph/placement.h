@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "app/geometry/signed_distance.h"
+#include "app/scene/finger.h"
+
+namespace pregrasp {
+
+/// Where the planning fingers are on the object: for each, whether it touches, its contact point
+/// p_OC [m] and the outward surface normal there. The paper's (p^1 and b^1, p^2 and b^2).
+struct Placement {
+  struct Contact {
+    bool on = false;
+    Vector3 p_OC = Vector3::Zero();
+    Vector3 nhat_O = Vector3::UnitZ();
+  };
+  std::array<Contact, kNumPlanningFingers> fingers;
+
+  const Contact& thumb() const { return fingers[0]; }
+  const Contact& index() const { return fingers[1]; }
+};
+
+/// Judges placements in one state of the world: the score function bound to an object cloud and a
+/// signed distance. Implementations are immutable and safe to call from several threads.
+class PlacementScorer {
+ public:
+  virtual ~PlacementScorer() = default;
+
+  /// One score in [0, 1] for each placement.
+  virtual std::vector<double> Score(std::span<const Placement> placements) const = 0;
+
+  /// True where the sphere of a fingertip touching at the contact would overlap the environment.
+  virtual bool IsOccluded(Finger finger, const Placement::Contact& contact) const = 0;
+};
+
+/// The point with barycentric coordinates `w` (sum 1) of triangle `t`, projected to the true shape,
+/// with the true shape's outward normal: what a contact is, everywhere.
+Placement::Contact ContactOnTriangle(const TriangleMesh& mesh, int t, const Vector3& w,
+                                     const SignedDistance& shape);
+
+/// Maps (u, v) in [0, 1]^2 to barycentric coordinates, uniform in area (Turk 1990).
+Vector3 BarycentricFromSquare(double u, double v);
+
+}  // namespace pregrasp

@@ -1,0 +1,216 @@
+#include "app/grasp/wrench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/core/error.h"
+#include "app/core/text.h"
+#include "app/grasp/contact_wrenches.h"
+
+namespace pregrasp {
+namespace internal {
+
+void ValidateContacts(std::span<const WrenchContact> contacts) {
+  if (contacts.empty()) throw InputError("wrench", "p", "at least one contact", "none");
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const WrenchContact& contact = contacts[i];
+    if (!contact.p.allFinite()) {
+      throw InputError("wrench", fmt::format("p[{}]", i + 1), "three finite numbers", "nan or inf");
+    }
+    const double length = contact.n.norm();
+    if (!(std::isfinite(length) && length > 1e-9)) {
+      throw InputError("wrench", fmt::format("n[{}]", i + 1), "a direction",
+                       "no finite length above 0");
+    }
+  }
+}
+
+}  // namespace internal
+
+namespace {
+
+using internal::ScaledContact;
+
+// Distances from the origin, as shares of f_max: at most the first counts as zero; at least the
+// second is a proof of separation, and rounding is well below it. What falls between the two (a
+// stalled iteration) is decided by the third.
+constexpr double kZero = 1e-10;
+constexpr double kApart = 1e-12;
+constexpr double kStalledZero = 1e-9;
+
+// The net wrenches of all admissible forces and one fixed load, by their support function.
+// `forces`, when given, keeps the forces behind each slot's point: slot by slot, contact by
+// contact.
+struct AdmissibleWrenches {
+  std::span<const ScaledContact> contacts;
+  const WrenchConfig& config;
+  Vector6 load = Vector6::Zero();
+  std::vector<Vector3>* forces = nullptr;
+
+  Vector6 Start() const {
+    Vector6 point = load;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Vector3 f = config.f_min * contacts[i].n;
+      point += CalcWrenchOf(contacts[i], f);
+      if (forces) (*forces)[i] = f;
+    }
+    return point;
+  }
+
+  void operator()(const Vector6& direction, int slot, Vector6& point) const {
+    point = load;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      double value = 0.0;
+      const Vector3 unit = CalcConeSupport(contacts[i], config.mu, direction, &value);
+      const Vector3 f = (value > 0.0 ? config.f_max : config.f_min) * unit;
+      point += CalcWrenchOf(contacts[i], f);
+      if (forces) (*forces)[slot * contacts.size() + i] = f;
+    }
+  }
+};
+
+// Eight contacts fit on the stack: more than a hand has.
+class ScaledContacts {
+ public:
+  ScaledContacts(std::span<const WrenchContact> contacts, double torque_scale) {
+    internal::ValidateContacts(contacts);
+    ScaledContact* out = few_.data();
+    if (contacts.size() > few_.size()) {
+      many_.resize(contacts.size());
+      out = many_.data();
+    }
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      out[i] = internal::MakeScaledContact(contacts[i], torque_scale);
+    }
+    span_ = {out, contacts.size()};
+  }
+  ScaledContacts(const ScaledContacts&) = delete;
+  ScaledContacts& operator=(const ScaledContacts&) = delete;
+
+  std::span<const ScaledContact> span() const { return span_; }
+
+ private:
+  std::array<ScaledContact, 8> few_;
+  std::vector<ScaledContact> many_;
+  std::span<const ScaledContact> span_;
+};
+
+Vector6 WeightLoad(const WrenchConfig& config) {
+  Vector6 load = Vector6::Zero();
+  load.head<3>() = config.mass * config.gravity;
+  return load;
+}
+
+MinNormPoint FindBalance(const AdmissibleWrenches& wrenches) {
+  MinNormConfig solver;
+  solver.tolerance = kZero * wrenches.config.f_max;
+  solver.separation = kApart * wrenches.config.f_max;
+  return FindMinNormPoint(wrenches.Start(), wrenches, solver);
+}
+
+bool HoldsOrigin(const MinNormPoint& point, const WrenchConfig& config) {
+  if (point.status != MinNormPoint::Status::kStalled) {
+    return point.status == MinNormPoint::Status::kContainsOrigin;
+  }
+  return point.v.norm() <= kStalledZero * config.f_max;
+}
+
+void RequireFinite(const char* field, double value, double low, const char* expected) {
+  if (!(std::isfinite(value) && value >= low)) {
+    throw InputError("wrench", field, expected, FormatDouble(value));
+  }
+}
+
+}  // namespace
+
+void WrenchConfig::Validate() const {
+  RequireFinite("mu", mu, 0.0, "a coefficient of at least 0");
+  RequireFinite("mass", mass, 0.0, "a mass of at least 0 kg");
+  RequireFinite("f_min", f_min, 0.0, "a force of at least 0 N");
+  RequireFinite("f_max", f_max, f_min, "a finite force of at least f_min");
+  if (!(f_max > 0.0)) throw InputError("wrench", "f_max", "a force above 0 N", FormatDouble(f_max));
+  if (!(std::isfinite(torque_scale) && torque_scale > 0.0)) {
+    throw InputError("wrench", "torque_scale", "a length above 0 m", FormatDouble(torque_scale));
+  }
+  if (!gravity.allFinite()) {
+    throw InputError("wrench", "gravity", "three finite numbers", "nan or inf");
+  }
+}
+
+const char* WrenchStatusName(WrenchStatus status) {
+  switch (status) {
+    case WrenchStatus::kFeasible:
+      return "feasible";
+    case WrenchStatus::kNoInternalForces:
+      return "no internal forces";
+    case WrenchStatus::kWeightNotBalanced:
+      return "weight not balanced";
+  }
+  return "?";
+}
+
+WrenchStatus CalcWrenchStatus(std::span<const WrenchContact> contacts, const WrenchConfig& config) {
+  config.Validate();
+  const ScaledContacts scaled(contacts, config.torque_scale);
+  AdmissibleWrenches wrenches{scaled.span(), config};
+  if (!HoldsOrigin(FindBalance(wrenches), config)) return WrenchStatus::kNoInternalForces;
+  wrenches.load = WeightLoad(config);
+  if (wrenches.load.isZero(0.0)) return WrenchStatus::kFeasible;
+  return HoldsOrigin(FindBalance(wrenches), config) ? WrenchStatus::kFeasible
+                                                    : WrenchStatus::kWeightNotBalanced;
+}
+
+WrenchResult CalcWrench(std::span<const WrenchContact> contacts, const WrenchConfig& config) {
+  config.Validate();
+  const ScaledContacts scaled(contacts, config.torque_scale);
+  const std::size_t count = contacts.size();
+  std::vector<Vector3> slot_forces(8 * count);
+  AdmissibleWrenches wrenches{scaled.span(), config, Vector6::Zero(), &slot_forces};
+
+  WrenchResult result;
+  MinNormPoint point = FindBalance(wrenches);
+  result.status = WrenchStatus::kNoInternalForces;
+  if (HoldsOrigin(point, config)) {
+    wrenches.load = WeightLoad(config);
+    point = FindBalance(wrenches);
+    result.status =
+        HoldsOrigin(point, config) ? WrenchStatus::kFeasible : WrenchStatus::kWeightNotBalanced;
+  }
+
+  result.forces = MatrixX3::Zero(static_cast<int>(count), 3);
+  for (int k = 0; k < point.size; ++k) {
+    for (std::size_t i = 0; i < count; ++i) {
+      result.forces.row(static_cast<int>(i)) +=
+          point.weight[k] * slot_forces[point.slot[k] * count + i].transpose();
+    }
+  }
+  result.residual = point.v.norm();
+  if (result.feasible()) {
+    result.residual = internal::SolveLeastEffort({scaled.span().begin(), scaled.span().end()},
+                                                 wrenches.load, config, result.forces);
+  } else {
+    result.separating = point.v / result.residual;
+  }
+  result.min_normal = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double normal = result.forces.row(static_cast<int>(i)).dot(scaled.span()[i].n);
+    result.min_normal = std::min(result.min_normal, normal);
+  }
+  result.margin = CalcMargin(contacts, config.mu, config.torque_scale);
+  result.closed = result.margin > 0.0;
+  return result;
+}
+
+std::vector<WrenchContact> MakeWrenchContacts(const MatrixX3& P, const MatrixX3& N) {
+  if (P.rows() != N.rows()) {
+    throw InputError("wrench", "n", fmt::format("as many normals as points ({})", P.rows()),
+                     std::to_string(N.rows()));
+  }
+  std::vector<WrenchContact> contacts(P.rows());
+  for (int i = 0; i < P.rows(); ++i) contacts[i] = {P.row(i), N.row(i)};
+  internal::ValidateContacts(contacts);
+  return contacts;
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,1 @@
+pregrasp_bench(learning_bench SOURCES learning_bench.cc DEPENDS pregrasp_networks)

@@ -1,0 +1,69 @@
+// The kernel against its oracle: the same contact core run through Simbody's State and operators.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "app/dynamics/world.h"
+#include "tests/dynamics/scenes.h"
+
+namespace pregrasp {
+namespace {
+
+// Runs both steppers from `state`, ten steps at a time, and returns the largest difference.
+double CompareSteppers(const World& world, int blocks, WorldState* state) {
+  double largest = 0.0;
+  for (int block = 0; block < blocks; ++block) {
+    WorldState oracle = *state;
+    for (int i = 0; i < 10; ++i) {
+      world.Step(*state);
+      world.StepWithSimbody(oracle);
+      for (std::size_t b = 0; b < state->bodies.size(); ++b) {
+        const BodyState &x = state->bodies[b], &y = oracle.bodies[b];
+        largest = std::max({largest, (x.p_WB - y.p_WB).norm(), (x.v_WB - y.v_WB).norm(),
+                            (x.w_WB - y.w_WB).norm(), (x.q_WB.coeffs() - y.q_WB.coeffs()).norm()});
+      }
+      for (int f = 0; f < kNumPlanningFingers; ++f) {
+        largest = std::max(largest, (state->fingers[f].p_WF - oracle.fingers[f].p_WF).norm());
+      }
+    }
+  }
+  return largest;
+}
+
+TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12OverTenStepsOnATippingPushedOffCentreBody) {
+  // Products of inertia and a centre of mass off the origin: nothing cancels by symmetry.
+  Matrix3 I = BoxInertia(0.4, Vector3(0.1, 0.08, 0.06));
+  I(0, 1) = I(1, 0) = 4e-5;
+  I(1, 2) = I(2, 1) = -3e-5;
+  const World world(MakeScene(
+      MakeMovable("box", Box{Vector3(0.1, 0.08, 0.06)}, At(0, 0, 0.035, Vector3(3, 2, 40)), 0.4,
+                  0.4, I, Vector3(0.01, -0.008, 0.004)),
+      {MakeTable(), MakeFixed("wall", Box{Vector3(0.02, 0.5, 0.5)}, At(-0.09, 0, 0.25), 0.3)}));
+  WorldState state = world.InitialState();
+  state.bodies[0].w_WB = Vector3(0.5, -2.0, 1.0);
+  state.bodies[0].v_WB = Vector3(0.4, 0.1, -0.3);
+  world.PutFinger(state, Finger::kIndex, Vector3(0.01, 0.0, 0.03));
+  world.PutFinger(state, Finger::kThumb, Vector3(-0.05, 0.01, 0.0));
+  state.fingers[0].p_WTarget += Vector3(0.05, 0.02, 0.0);
+  state.fingers[1].p_WTarget += Vector3(0.01, 0.06, -0.04);
+  EXPECT_LT(CompareSteppers(world, 20, &state), 1e-12);
+}
+
+TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12OverTenStepsWithAMovableNeighbour) {
+  const World world(MakeScene(
+      MakeBox("box", Vector3(0.1, 0.08, 0.06), At(0, 0, 0.03), 0.4, 0.4),
+      {MakeTable(), MakeBox("neighbour", Vector3(0.05, 0.1, 0.12), At(0.08, 0, 0.06), 0.6, 0.3)}));
+  WorldState state = world.InitialState();
+  world.PutFinger(state, Finger::kIndex, Vector3(-0.05, 0.0, 0.0));
+  state.fingers[1].p_WTarget += Vector3(0.15, 0.02, 0.0);
+  EXPECT_LT(CompareSteppers(world, 20, &state), 1e-12);
+}
+
+TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12WhileAnOverlapIsPushedOut) {
+  const World world(MakeScene(MakeBox("box", Vector3(0.1, 0.08, 0.06), At(0, 0, 0.028), 0.4, 0.4)));
+  WorldState state = world.InitialState();
+  EXPECT_LT(CompareSteppers(world, 10, &state), 1e-12);
+}
+
+}  // namespace
+}  // namespace pregrasp

@@ -1,0 +1,263 @@
+#include "app/geometry/load_shape.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "app/core/error.h"
+#include "app/geometry/mass_properties.h"
+#include "app/geometry/signed_distance.h"
+#include "tests/geometry/test_shapes.h"
+#include "tests/geometry/write_mesh.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::At;
+
+class LoadShapeTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    directory_ = fs::temp_directory_path() /
+                 (std::string("pregrasp_load_") + info->name() + std::to_string(::getpid()));
+    fs::create_directories(directory_);
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  void Write(const std::string& name, const std::string& text) const {
+    std::ofstream(directory_ / name, std::ios::binary) << text;
+  }
+
+  TriangleMesh Load(const std::string& name, double scale = 1.0) const {
+    Mesh mesh;
+    mesh.file = name;
+    mesh.scale = scale;
+    Shape shape = mesh;
+    LoadShape(shape, directory_, "a.lua:7", "object.shape");
+    return std::get<Mesh>(shape).mesh;
+  }
+
+  // The message, and that it is an InputError of the right place.
+  std::string Refusal(const std::string& name) const {
+    try {
+      Load(name);
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.where(), "a.lua:7");
+      EXPECT_EQ(error.field(), "object.shape");
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  fs::path directory_;
+};
+
+TEST_F(LoadShapeTest, ReadsAnObjAsItIs) {
+  const TriangleMesh mesh = testing::MakeTorus(0.04, 0.01, 12, 8);
+  Write("a.obj", testing::ObjText(mesh));
+  const TriangleMesh loaded = Load("a.obj");
+  EXPECT_EQ(loaded.V.rows(), mesh.V.rows());
+  EXPECT_EQ(loaded.F.rows(), mesh.F.rows());
+  EXPECT_NEAR(CalcVolume(loaded), CalcVolume(mesh), 1e-6 * CalcVolume(mesh));
+}
+
+TEST_F(LoadShapeTest, WeldsTheCornersOfAnStl) {
+  const TriangleMesh mesh = testing::MakeCup(0.04, 0.09, 0.003, 24);
+  Write("a.stl", testing::BinaryStl(mesh));
+  const TriangleMesh loaded = Load("a.stl");
+  EXPECT_EQ(loaded.V.rows(), mesh.V.rows());
+  EXPECT_EQ(loaded.F.rows(), mesh.F.rows());
+}
+
+TEST_F(LoadShapeTest, AppliesTheScale) {
+  Write("a.obj", testing::ObjText(Tessellate(Box{Vector3(100, 50, 20)})));
+  EXPECT_NEAR(CalcVolume(Load("a.obj", 0.001)), 1e-4, 1e-10);
+}
+
+TEST_F(LoadShapeTest, TurnsAMeshOutward) {
+  TriangleMesh mesh = testing::MakeTorus(0.04, 0.01, 12, 8);
+  mesh.F.col(1).swap(mesh.F.col(2));
+  Write("inward.obj", testing::ObjText(mesh));
+  EXPECT_GT(CalcVolume(Load("inward.obj")), 0.0);
+  for (int f = 0; f < mesh.F.rows(); f += 3) std::swap(mesh.F(f, 0), mesh.F(f, 1));
+  Write("mixed.obj", testing::ObjText(mesh));
+  const TriangleMesh loaded = Load("mixed.obj");
+  EXPECT_TRUE(FindDefects(loaded).closed());
+  EXPECT_GT(CalcVolume(loaded), 0.0);
+}
+
+TEST_F(LoadShapeTest, AComponentInsideAnotherIsACavityWhateverItsOrientation) {
+  TriangleMesh hollow = Tessellate(Box{Vector3(2, 2, 2)});
+  AppendMesh(hollow, Transformed(Tessellate(Box{Vector3(1, 1, 1)}), At(0.2, 0, 0)));
+  AppendMesh(hollow, Transformed(Tessellate(Box{Vector3(1, 1, 1)}), At(5, 0, 0)));
+  Write("hollow.obj", testing::ObjText(hollow));
+  const TriangleMesh loaded = Load("hollow.obj");
+  EXPECT_NEAR(CalcVolume(loaded), 8.0, 1e-6);
+  const SignedDistance distance(testing::MakeMesh(loaded));
+  EXPECT_GT(distance.Calc({0.2, 0, 0}), 0.0);
+  EXPECT_LT(distance.Calc({-0.8, 0, 0}), 0.0);
+  EXPECT_LT(distance.Calc({5, 0, 0}), 0.0);
+}
+
+TEST_F(LoadShapeTest, SplitsAVertexThatTwoSolidsShare) {
+  TriangleMesh two = Tessellate(Box{Vector3(1, 1, 1)});
+  AppendMesh(two, Transformed(Tessellate(Box{Vector3(1, 1, 1)}), At(1, 1, 1)));
+  Write("pinched.obj", testing::ObjText(two));
+  const TriangleMesh loaded = Load("pinched.obj");
+  EXPECT_EQ(loaded.V.rows(), 16);
+}
+
+TEST_F(LoadShapeTest, RefusesAnOpenMeshAndCountsItsOpenEdges) {
+  TriangleMesh mesh = Tessellate(Cylinder{0.04, 0.1}, 12);
+  const TriangleMesh closed = mesh;
+  mesh.F.resize(0, 3);
+  for (int f = 0; f < closed.F.rows(); ++f) {  // without the fan to the top's centre
+    if ((closed.F.row(f).array() == closed.V.rows() - 1).any()) continue;
+    mesh.F.conservativeResize(mesh.F.rows() + 1, 3);
+    mesh.F.bottomRows(1) = closed.F.row(f);
+  }
+  Write("cup.obj", testing::ObjText(mesh));
+  EXPECT_EQ(Refusal("cup.obj"),
+            "a.lua:7: object.shape: expected a closed mesh, got \"cup.obj\", which has 12 open "
+            "edges");
+}
+
+TEST_F(LoadShapeTest, RefusesMoreThanTwoTrianglesAtAnEdge) {
+  TriangleMesh two = Tessellate(Box{Vector3(1, 1, 1)});
+  AppendMesh(two, Transformed(Tessellate(Box{Vector3(1, 1, 1)}), At(1, 1, 0)));
+  Write("edge.obj", testing::ObjText(two));
+  EXPECT_EQ(Refusal("edge.obj"),
+            "a.lua:7: object.shape: expected a mesh with two triangles at each edge, got "
+            "\"edge.obj\", which has more at 1 edge");
+}
+
+TEST_F(LoadShapeTest, RefusesASurfaceWithOneSide) {
+  // The projective plane of six vertices: closed, every edge has two triangles, no inside.
+  TriangleMesh mesh;
+  mesh.V.resize(6, 3);
+  mesh.V << 1, 0, 0, 0, 1, 0, 0, 0, 1, -1, 0, 0.3, 0.2, -1, 0, 0, 0.1, -1;
+  mesh.F.resize(10, 3);
+  mesh.F << 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5, 0, 5, 1, 1, 2, 4, 2, 3, 5, 3, 4, 1, 4, 5, 2, 5, 1,
+      3;
+  ASSERT_EQ(FindDefects(mesh).open_edges, 0);
+  Write("plane.obj", testing::ObjText(mesh));
+  EXPECT_NE(Refusal("plane.obj").find("one side only"), std::string::npos);
+}
+
+TEST_F(LoadShapeTest, RefusesAMeshWithoutVolume) {
+  TriangleMesh flat = Tessellate(Box{Vector3(1, 1, 1)});
+  flat.V.col(2).setZero();
+  Write("flat.obj", testing::ObjText(flat));
+  EXPECT_NE(Refusal("flat.obj"), "accepted");
+  TriangleMesh folded;
+  folded.V.resize(3, 3);
+  folded.V << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  folded.F.resize(2, 3);
+  folded.F << 0, 1, 2, 0, 2, 1;
+  Write("folded.obj", testing::ObjText(folded));
+  EXPECT_NE(Refusal("folded.obj").find("encloses"), std::string::npos);
+}
+
+TEST_F(LoadShapeTest, RefusesCoordinatesThatAreNotFinite) {
+  const TriangleMesh mesh = Tessellate(Box{Vector3(1, 1, 1)});
+  std::string stl = testing::BinaryStl(mesh);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  stl.replace(84 + 50 * 3 + 12, 4, reinterpret_cast<const char*>(&nan), 4);
+  Write("nan.stl", stl);
+  EXPECT_NE(Refusal("nan.stl").find("finite"), std::string::npos) << Refusal("nan.stl");
+}
+
+TEST_F(LoadShapeTest, RefusesWhatIsNoMesh) {
+  Write("empty.obj", "");
+  Write("rubbish.obj", "Dear Sir or Madam,\n\nplease find enclosed no mesh at all.\n");
+  Write("rubbish.ply", "Dear Sir or Madam,\n\nplease find enclosed no mesh at all.\n");
+  Write("rubbish.stl", std::string(200, '\x7f'));
+  Write("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n");
+  Write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  Write("notes.txt", "hello");
+  fs::create_directories(directory_ / "folder.obj");
+  for (const char* name : {"empty.obj", "rubbish.obj", "rubbish.ply", "rubbish.stl", "cut.ply",
+                           "points.obj", "notes.txt", "folder.obj", "missing.obj", ""}) {
+    const std::string refusal = Refusal(name);
+    EXPECT_EQ(refusal.rfind("a.lua:7: object.shape: expected ", 0), 0U) << name << ": " << refusal;
+    EXPECT_EQ(refusal.find('\n'), std::string::npos) << name;
+  }
+  EXPECT_NE(Refusal("missing.obj").find("\"missing.obj\", which does not exist"),
+            std::string::npos);
+}
+
+TEST_F(LoadShapeTest, RefusesFacesThatNameNoVertex) {
+  Write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  Write("index.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
+        "0\n0 1 0\n3 0 1 7\n");
+  EXPECT_NE(Refusal("index.obj"), "accepted");
+  EXPECT_NE(Refusal("index.ply"), "accepted");
+}
+
+TEST_F(LoadShapeTest, RefusesAFileThatEndsEarlyAtEveryLength) {
+  const TriangleMesh mesh = Tessellate(Box{Vector3(1, 1, 1)});
+  for (const std::string encoding : {"ascii", "binary_little_endian"}) {
+    const std::string whole = testing::PlyText(mesh, encoding);
+    Write("whole.ply", whole);
+    EXPECT_NEAR(CalcVolume(Load("whole.ply")), 1.0, 1e-6) << encoding;
+    for (std::size_t length = 0; length + 2 < whole.size(); length += 7) {
+      Write("cut.ply", whole.substr(0, length));
+      EXPECT_NE(Refusal("cut.ply"), "accepted") << encoding << " " << length;
+    }
+  }
+}
+
+TEST_F(LoadShapeTest, AMeshInMillimetresIsToldToBeScaled) {
+  Write("mm.obj", testing::ObjText(Tessellate(Box{Vector3(120, 80, 60)})));
+  EXPECT_NE(Refusal("mm.obj").find("scale"), std::string::npos);
+}
+
+TEST_F(LoadShapeTest, NamesThePartOfAUnion) {
+  Union whole;
+  whole.parts.push_back({Box{Vector3(1, 1, 1)}, RigidTransform::Identity()});
+  Mesh missing;
+  missing.file = "gone.stl";
+  whole.parts.push_back({missing, RigidTransform::Identity()});
+  Shape shape = whole;
+  try {
+    LoadShape(shape, directory_, "a.lua:7", "object.shape");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.field(), "object.shape[2]");
+  }
+}
+
+TEST_F(LoadShapeTest, FillsInMassPropertiesOnlyWhereTheSceneGaveNone) {
+  Write("a.obj",
+        testing::ObjText(Transformed(Tessellate(Box{Vector3(0.1, 0.2, 0.3)}), At(1, 0, 0))));
+  Mesh mesh;
+  mesh.file = "a.obj";
+  Scene scene;
+  scene.bodies.resize(3);
+  for (Body& body : scene.bodies) {
+    body.shape = mesh;
+    body.mass_properties = MassProperties{2.0, Vector3::Zero(), Matrix3::Zero()};
+  }
+  scene.bodies[1].mass_properties->p_BoBcm = Vector3(1, 0, 0.05);
+  scene.bodies[1].mass_properties->I_BBcm = Matrix3::Identity();
+  scene.bodies[2].com_given = true;
+  LoadShapes(scene, directory_);
+  const Matrix3 uniform = CalcMassProperties(Box{Vector3(0.1, 0.2, 0.3)}, 2.0).I_BBcm;
+  EXPECT_LT((scene.bodies[0].mass_properties->p_BoBcm - Vector3(1, 0, 0)).norm(), 1e-6);
+  EXPECT_LT((scene.bodies[0].mass_properties->I_BBcm - uniform).norm(), 1e-6 * uniform.norm());
+  EXPECT_EQ(scene.bodies[1].mass_properties->p_BoBcm, Vector3(1, 0, 0.05));
+  EXPECT_EQ(scene.bodies[1].mass_properties->I_BBcm, Matrix3::Identity());
+  EXPECT_EQ(scene.bodies[2].mass_properties->p_BoBcm, Vector3::Zero());
+}
+
+}  // namespace
+}  // namespace pregrasp

@@ -1,0 +1,119 @@
+#include "app/graph/contact_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "app/core/error.h"
+#include "tests/graph/graph_fixture.h"
+
+namespace pregrasp {
+namespace {
+
+const Vector3 kSize(0.2, 0.1, 0.05);
+
+ContactGraph MakeScored(double top_percent, std::uint64_t seed = 1) {
+  ContactGraphConfig config;
+  config.top_percent = top_percent;
+  ContactGraph graph(MakeBoxMesh(kSize), config);
+  graph.Score(SignedDistance(Box{kSize}), AnalyticScorer(3.0, -0.02), AnalyticScorer(50.0), seed);
+  return graph;
+}
+
+TEST(ContactGraphTest, NodesAreAllOrderedPairsOfTrianglesWithStableIds) {
+  const ContactGraph graph(MakeBoxMesh(kSize), {});
+  ASSERT_EQ(graph.nodes().size(), 144U);
+  for (int id = 0; id < 144; ++id) {
+    EXPECT_EQ(graph.nodes()[id].id, id);
+    EXPECT_EQ(graph.nodes()[id].thumb, id / 12);
+    EXPECT_EQ(graph.nodes()[id].index, id % 12);
+  }
+}
+
+TEST(ContactGraphTest, KeepsTheTopPercentByEitherScoreAndSaysWhy) {
+  ContactGraph graph = MakeScored(10.0);
+  graph.Prune();
+  const int each = 15;  // 10 % of 144, rounded up
+  int initial = 0;
+  for (const ContactNode& node : graph.nodes()) {
+    int better_c = 0, better_n = 0;
+    for (const ContactNode& other : graph.nodes()) {
+      better_c += other.s_c > node.s_c || (other.s_c == node.s_c && other.id < node.id);
+      better_n += other.s_n > node.s_n || (other.s_n == node.s_n && other.id < node.id);
+    }
+    EXPECT_EQ(node.rank_c, better_c + 1);
+    EXPECT_EQ(node.rank_n, better_n + 1);
+    EXPECT_EQ(node.initial, better_c < each);
+    EXPECT_EQ(node.kept, better_c < each || better_n < each);
+    initial += node.initial;
+
+    const NodeReason reason = graph.Why(node.id);
+    EXPECT_EQ(reason.verdict == NodeReason::Verdict::kPruned, !node.kept);
+    EXPECT_EQ(node.s_c >= reason.threshold_c || node.s_n >= reason.threshold_n, node.kept);
+  }
+  EXPECT_EQ(initial, each);
+}
+
+TEST(ContactGraphTest, EdgesJoinKeptNodesThatShareATriangleAndEachWithItself) {
+  ContactGraph graph = MakeScored(20.0);
+  graph.Prune();
+  std::set<std::pair<int, int>> edges;
+  for (const int a : graph.kept()) {
+    for (const int b : graph.neighbors(a)) {
+      EXPECT_TRUE(graph.nodes()[a].thumb == graph.nodes()[b].thumb ||
+                  graph.nodes()[a].index == graph.nodes()[b].index);
+      const auto& back = graph.neighbors(b);
+      EXPECT_TRUE(std::find(back.begin(), back.end(), a) != back.end());
+      edges.insert(std::minmax(a, b));
+    }
+    EXPECT_TRUE(edges.count({a, a}));
+  }
+  EXPECT_EQ(graph.num_edges(), static_cast<int>(edges.size()));
+}
+
+TEST(ContactGraphTest, AnOccludedPlacementIsWorthNothingInContext) {
+  ContactGraphConfig config;
+  ContactGraph graph(MakeBoxMesh(kSize), config);
+  graph.Score(SignedDistance(Box{kSize}), AnalyticScorer(3.0, 1.0), AnalyticScorer(3.0), 1);
+  for (const ContactNode& node : graph.nodes()) {
+    EXPECT_EQ(node.s_c, 0.0);
+    EXPECT_EQ(node.occluded, 1.0);
+    EXPECT_GT(node.s_n, 0.0);
+  }
+}
+
+TEST(ContactGraphTest, TheSameSeedGivesTheSameScoresAndAnotherSeedOthers) {
+  const ContactGraph a = MakeScored(5.0, 1), b = MakeScored(5.0, 1), c = MakeScored(5.0, 2);
+  int different = 0;
+  for (int id = 0; id < 144; ++id) {
+    EXPECT_EQ(a.nodes()[id].s_c, b.nodes()[id].s_c);
+    EXPECT_EQ(a.nodes()[id].s_n, b.nodes()[id].s_n);
+    different += a.nodes()[id].s_n != c.nodes()[id].s_n;
+  }
+  EXPECT_GT(different, 100);
+}
+
+TEST(ContactGraphTest, PruningStepByStepEqualsPruningAtOnce) {
+  ContactGraph once = MakeScored(10.0);
+  ContactGraph steps = once;
+  once.Prune();
+  steps.PruneByContext();
+  const ContactGraph earlier = steps;
+  steps.PruneByFree();
+  steps.Connect();
+  EXPECT_EQ(once.kept(), steps.kept());
+  EXPECT_EQ(once.num_edges(), steps.num_edges());
+  EXPECT_EQ(earlier.stage(), GraphStage::kPrunedContext);
+}
+
+TEST(ContactGraphTest, BadConfigurationsAndIdsAreBadInput) {
+  ContactGraphConfig config;
+  config.top_percent = 0.0;
+  EXPECT_THROW(ContactGraph(MakeBoxMesh(kSize), config), InputError);
+  ContactGraph graph(MakeBoxMesh(kSize), {});
+  EXPECT_THROW(graph.Prune(), InputError);
+  EXPECT_THROW(graph.Why(144), InputError);
+}
+
+}  // namespace
+}  // namespace pregrasp

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cmath>
+
+#include "app/graph/contact_graph.h"
+
+namespace pregrasp {
+
+/// A box mesh of 12 triangles, full sizes (x, y, z).
+inline TriangleMesh MakeBoxMesh(const Vector3& size) {
+  TriangleMesh mesh;
+  mesh.V.resize(8, 3);
+  for (int i = 0; i < 8; ++i) {
+    mesh.V.row(i) << ((i & 1) - 0.5) * size.x(), (((i >> 1) & 1) - 0.5) * size.y(),
+        (((i >> 2) & 1) - 0.5) * size.z();
+  }
+  mesh.F.resize(12, 3);
+  mesh.F << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4,
+      6, 1, 3, 5, 3, 7, 5;
+  return mesh;
+}
+
+/// Scores by a smooth function of the contact points; occluded below a height.
+class AnalyticScorer : public PlacementScorer {
+ public:
+  explicit AnalyticScorer(double weight, double occluded_below = -1e9)
+      : weight_(weight), occluded_below_(occluded_below) {}
+
+  std::vector<double> Score(std::span<const Placement> placements) const override {
+    std::vector<double> scores;
+    for (const Placement& placement : placements) {
+      double sum = 0.0;
+      for (const auto& finger : placement.fingers) {
+        if (finger.on) sum += 1.0 + std::sin(31.0 * finger.p_OC.x() + weight_ * finger.p_OC.z());
+      }
+      scores.push_back(sum / 4.0);
+    }
+    return scores;
+  }
+
+  bool IsOccluded(Finger, const Placement::Contact& contact) const override {
+    return contact.p_OC.z() < occluded_below_;
+  }
+
+ private:
+  double weight_, occluded_below_;
+};
+
+}  // namespace pregrasp
