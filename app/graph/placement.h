@@ -36,6 +36,22 @@ class PlacementScorer {
   virtual bool IsOccluded(Finger finger, const Placement::Contact& contact) const = 0;
 };
 
+/// One state of the world to score: the pose of every scene body and where the fingers are.
+struct ScoredState {
+  std::vector<RigidTransform> X_WB;  ///< in scene order, the object first
+  Placement placement;
+};
+
+/// The score function bound to an object and its surroundings, for states that differ in the poses
+/// of bodies too. Safe to call from several threads; batches are scored together.
+class StateScorer {
+ public:
+  virtual ~StateScorer() = default;
+
+  /// One score in [0, 1] for each state.
+  virtual std::vector<double> Score(std::span<const ScoredState> states) const = 0;
+};
+
 /// The point with barycentric coordinates `w` (sum 1) of triangle `t`, projected to the true shape,
 /// with the true shape's outward normal: what a contact is, everywhere.
 Placement::Contact ContactOnTriangle(const TriangleMesh& mesh, int t, const Vector3& w,

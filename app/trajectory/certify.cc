@@ -1,0 +1,67 @@
+#include "app/trajectory/certify.h"
+
+#include <cmath>
+
+#include "app/core/check.h"
+
+namespace pregrasp {
+namespace {
+
+void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* turn_deg) {
+  const RigidTransform X_a = a.bodies.front().X_WB(), X_b = b.bodies.front().X_WB();
+  *shift = (X_b.translation() - X_a.translation()).norm();
+  *turn_deg = RadToDeg(RotationAngle(X_a.linear(), X_b.linear()));
+}
+
+std::vector<CertifyReason> Judge(const PlanOutcome& outcome, const CertifyConfig& config) {
+  if (outcome.diverged) return {CertifyReason::kDiverged};
+  std::vector<CertifyReason> reasons;
+  if (outcome.contact_seconds == 0.0) reasons.push_back(CertifyReason::kNeverTouches);
+  if (outcome.max_tip_overlap > kTipOverlapAllowed) reasons.push_back(CertifyReason::kTipOverlap);
+  double shift = 0.0, turn_deg = 0.0;
+  CalcShift(outcome.hold_start, outcome.end, &shift, &turn_deg);
+  if (!(shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg)) {
+    reasons.push_back(CertifyReason::kDoesNotHold);
+  }
+  return reasons;
+}
+
+}  // namespace
+
+const char* CertifyReasonText(CertifyReason reason) {
+  switch (reason) {
+    case CertifyReason::kDiverged:
+      return "the object left the scene";
+    case CertifyReason::kTipOverlap:
+      return "a fingertip overlaps the surroundings by more than 1 mm";
+    case CertifyReason::kDoesNotHold:
+      return "the object does not stay where it is while the last targets are kept";
+    case CertifyReason::kNeverTouches:
+      return "no finger ever touches the object";
+    case CertifyReason::kStepDependent:
+      return "half the time step gives another verdict";
+  }
+  return "";
+}
+
+Certificate CertifyPlan(const World& world, const World& half_world,
+                        const EnvironmentDistance& environment, const WorldState& start,
+                        const WorldPlan& plan, PlanTiming timing, const CertifyConfig& config) {
+  PREGRASP_CHECK(std::abs(half_world.config().dt * 2.0 - world.config().dt) < 1e-12);
+  timing.hold_seconds = config.hold_seconds;
+  Certificate result;
+  result.full =
+      SimulatePlan(world, environment, start, plan, timing, Stepper::kSimbody, &result.trace);
+  result.half = SimulatePlan(half_world, environment, start, plan, timing, Stepper::kSimbody);
+  CalcShift(result.full.hold_start, result.full.end, &result.hold_shift, &result.hold_turn_deg);
+  CalcShift(result.full.end, result.half.end, &result.step_shift, &result.step_turn_deg);
+  result.reasons = Judge(result.full, config);
+  const bool half_passes = Judge(result.half, config).empty();
+  if (result.reasons.empty() != half_passes) {
+    result.reasons.push_back(CertifyReason::kStepDependent);
+  }
+  result.certified = result.reasons.empty();
+  return result;
+}
+
+}  // namespace pregrasp

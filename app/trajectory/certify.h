@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "app/trajectory/simulate_plan.h"
+
+namespace pregrasp {
+
+struct CertifyConfig {
+  double hold_seconds = 1.5;       ///< the last targets are kept this long (design, section 4)
+  double max_hold_shift = 0.01;    ///< the object may move this far in the hold [m]
+  double max_hold_turn_deg = 5.0;  ///< and turn this far [degrees]
+};
+
+/// Why a plan is not certified.
+enum class CertifyReason {
+  kDiverged,       ///< the object left the scene
+  kTipOverlap,     ///< a fingertip sphere overlaps the surroundings by more than 1 mm at some step
+  kDoesNotHold,    ///< the object moves on in the hold
+  kNeverTouches,   ///< no finger ever touches the object
+  kStepDependent,  ///< half the time step gives another verdict
+};
+const char* CertifyReasonText(CertifyReason reason);
+
+/// A plan simulated through the full Simbody model, and again at half the step.
+struct Certificate {
+  bool certified = false;
+  std::vector<CertifyReason> reasons;  ///< empty if certified
+  PlanOutcome full, half;
+  double hold_shift = 0.0;      ///< [m], at the full step
+  double hold_turn_deg = 0.0;   ///< [degrees]
+  double step_shift = 0.0;      ///< distance between the two final positions [m]
+  double step_turn_deg = 0.0;   ///< and orientations [degrees]
+  std::vector<TraceRow> trace;  ///< every step at the full step, the start first
+};
+
+/// Certifies the world plan `plan` (honesty rules 4 and 5).
+/// @param half_world  the same scene at half the step.
+Certificate CertifyPlan(const World& world, const World& half_world,
+                        const EnvironmentDistance& environment, const WorldState& start,
+                        const WorldPlan& plan, PlanTiming timing, const CertifyConfig& config);
+
+}  // namespace pregrasp

@@ -1,0 +1,74 @@
+#include "app/trajectory/cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/core/check.h"
+
+namespace pregrasp {
+namespace {
+
+constexpr double kRestSpeed = 0.1;         // [m/s] counts as one unit of unrest
+constexpr double kRestTurn = 1.0;          // [rad/s] counts as one unit of unrest
+constexpr double kFastSpeed = 0.35;        // [m/s]
+constexpr double kMinTipDistance = 0.015;  // [m]
+constexpr double kFallDepth = 0.15;        // [m] below its start: over the edge and gone
+
+ScoredState MakeScoredState(const World& world, const WorldState& state) {
+  ScoredState scored;
+  scored.X_WB = world.GetPoses(state);
+  for (int j = 0; j < kNumPlanningFingers; ++j) {
+    const FingertipState& tip = state.fingers[j];
+    scored.placement.fingers[j] = {tip.on, tip.p_OC, tip.nhat_O};
+  }
+  return scored;
+}
+
+}  // namespace
+
+std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& outcome) {
+  std::vector<ScoredState> states;
+  for (const WorldState& state : outcome.stage_starts) {
+    states.push_back(MakeScoredState(world, state));
+  }
+  states.push_back(MakeScoredState(world, outcome.end));
+  return states;
+}
+
+PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
+                      std::span<const double> scores, const CostWeights& weights,
+                      double force_scale) {
+  PREGRASP_CHECK(scores.size() == outcome.stage_starts.size() + 1, scores.size());
+  PlanCost cost;
+  cost.stage_scores.assign(scores.begin(), scores.end() - 1);
+  cost.final_score = scores.back();
+  const bool touched = outcome.contact_seconds > 0.0;
+  cost.no_contact = touched ? 0.0 : weights.no_contact;
+  if (touched) {
+    cost.slip = weights.slip * outcome.slip_seconds / outcome.contact_seconds;
+    cost.effort = weights.effort * outcome.effort / (outcome.contact_seconds * force_scale);
+  }
+  const BodyState& end = outcome.end.bodies.front();
+  cost.unrest =
+      weights.unrest * std::min(2.0, end.v_WB.norm() / kRestSpeed + end.w_WB.norm() / kRestTurn);
+  cost.speed = weights.speed * std::clamp(outcome.max_speed - kFastSpeed, 0.0, 2.0);
+  if (outcome.seconds > 0.0) {
+    cost.tip_overlap =
+        weights.tip_overlap * std::min(1.0, outcome.tip_overlap_seconds / outcome.seconds);
+  }
+  cost.tip_spacing = outcome.min_tip_distance < kMinTipDistance ? weights.tip_spacing : 0.0;
+  const BodyState& start = outcome.stage_starts.front().bodies.front();
+  const Vector3 up = -world.scene().gravity.normalized();
+  const bool fallen = outcome.diverged || up.dot(end.p_WB - start.p_WB) < -kFallDepth;
+  cost.fall = fallen ? weights.fall : 0.0;
+  if (outcome.diverged) {  // its numbers mean nothing
+    cost.unrest = 2.0 * weights.unrest;
+    cost.speed = 2.0 * weights.speed;
+  }
+  for (const double score : scores) cost.total -= score;
+  cost.total += cost.no_contact + cost.slip + cost.effort + cost.unrest + cost.speed +
+                cost.tip_overlap + cost.tip_spacing + cost.fall;
+  return cost;
+}
+
+}  // namespace pregrasp

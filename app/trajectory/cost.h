@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "app/graph/placement.h"
+#include "app/trajectory/simulate_plan.h"
+
+namespace pregrasp {
+
+/// Weights of the small terms beside the paper's scores; the scores themselves have weight 1. Every
+/// term is zero for a plan that does nothing wrong, and bounded, so that none can swamp the scores.
+struct CostWeights {
+  double no_contact = 0.5;   ///< no finger ever touches: doing nothing must never look good
+  double slip = 0.25;        ///< share of the contact time at the cone's limit
+  double effort = 0.1;       ///< mean force over the largest one allowed
+  double unrest = 0.3;       ///< speed when the hold ends, v / (0.1 m/s) + w / (1 rad/s), at most 2
+  double speed = 0.8;        ///< peak speed above 0.35 m/s, in m/s, at most 2
+  double tip_overlap = 1.0;  ///< share of the time with a fingertip in the surroundings
+  double tip_spacing = 0.5;  ///< both tips on and nearer than 15 mm
+  double fall = 1.5;         ///< the object fell out of the scene, or the simulation diverged
+};
+
+/// A plan's cost by its terms [dimensionless]; `total` = -(sum of scores) + penalties.
+struct PlanCost {
+  std::vector<double> stage_scores;  ///< at the start of each stage (paper, the objective)
+  double final_score = 0.0;          ///< after the hold
+  double no_contact = 0.0, slip = 0.0, effort = 0.0, unrest = 0.0, speed = 0.0;
+  double tip_overlap = 0.0, tip_spacing = 0.0, fall = 0.0;
+  double total = 0.0;
+};
+
+/// The states whose scores the cost of `outcome` needs: each stage's start, then the end.
+std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& outcome);
+
+/// The cost of a plan from its outcome and the scores of StatesToScore, in order.
+PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
+                      std::span<const double> scores, const CostWeights& weights,
+                      double force_scale);
+
+}  // namespace pregrasp

@@ -1,0 +1,150 @@
+#include "app/trajectory/mppi.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/core/check.h"
+#include "app/core/error.h"
+#include "app/core/text.h"
+
+namespace pregrasp {
+namespace {
+
+void RequireRange(const char* field, double value, double low, double high) {
+  if (!(value >= low && value <= high)) {
+    throw InputError("", field, "a number from " + FormatDouble(low) + " to " + FormatDouble(high),
+                     FormatDouble(value));
+  }
+}
+
+// Sigma falls geometrically from the first iteration to the last.
+double SigmaAt(const MppiConfig& config, int iteration) {
+  if (config.iterations <= 1) return config.sigma;
+  const double s = std::min(1.0, static_cast<double>(iteration) / (config.iterations - 1));
+  return config.sigma * std::pow(config.final_sigma / config.sigma, s);
+}
+
+}  // namespace
+
+void MppiConfig::Validate() const {
+  RequireRange("samples", samples, 4, 4096);
+  RequireRange("iterations", iterations, 1, 1000);
+  RequireRange("sigma", sigma, 1e-6, 100);
+  RequireRange("final_sigma", final_sigma, 1e-6, 100);
+  RequireRange("temperature", temperature, 1e-6, 1e6);
+  RequireRange("patience", patience, 1, 1000);
+  RequireRange("max_travel", max_travel, 0, 1);
+  RequireRange("stage_seconds", timing.stage_seconds, 0.01, 60);
+  RequireRange("knots", timing.knots, 1, 100);
+  RequireRange("hold_seconds", timing.hold_seconds, 0, 60);
+}
+
+Mppi::Mppi(const MppiProblem& problem, const MppiConfig& config)
+    : problem_(problem),
+      config_(config),
+      range_(MakeActionRange(problem.world->scene(), config.max_travel)),
+      space_(*problem.graph, problem.path.nodes, *problem.shape, range_, config.timing.knots) {
+  config.Validate();
+}
+
+MppiState Mppi::Start() const {
+  MppiState state;
+  state.mean.assign(space_.size(), 0.0);
+  state.best_cost = std::numeric_limits<double>::infinity();
+  return state;
+}
+
+PlanOutcome Mppi::Simulate(const std::vector<double>& action) const {
+  return SimulatePlan(*problem_.world, *problem_.environment, problem_.start, space_.Decode(action),
+                      config_.timing);
+}
+
+std::vector<std::vector<double>> Mppi::SampleActions(const MppiState& state) const {
+  const double sigma = SigmaAt(config_, state.iteration);
+  std::vector<std::vector<double>> actions(config_.samples, state.mean);
+  for (int i = 1; i < config_.samples; ++i) {
+    if (i == 1 && !state.best_action.empty()) {
+      actions[i] = state.best_action;
+      continue;
+    }
+    Rng rng(problem_.seed, RngStream::kMppi, static_cast<std::uint32_t>(state.iteration),
+            static_cast<std::uint32_t>(i));
+    for (double& u : actions[i]) u += sigma * rng.Normal();
+  }
+  return actions;
+}
+
+void Mppi::Step(MppiState& state, ThreadPool& pool) const {
+  const std::vector<std::vector<double>> actions = SampleActions(state);
+  const int count = static_cast<int>(actions.size());
+  std::vector<PlanOutcome> outcomes(count);
+  pool.ParallelFor(count, [&](int i, int) { outcomes[i] = Simulate(actions[i]); });
+
+  std::vector<ScoredState> states;
+  std::vector<std::size_t> first;  // index of each outcome's first state
+  for (const PlanOutcome& outcome : outcomes) {
+    first.push_back(states.size());
+    for (ScoredState& scored : StatesToScore(*problem_.world, outcome)) {
+      states.push_back(std::move(scored));
+    }
+  }
+  first.push_back(states.size());
+  const std::vector<double> scores = problem_.scorer->Score(states);
+  PREGRASP_CHECK(scores.size() == states.size(), scores.size(), states.size());
+
+  const double force_scale = range_.max_depth * problem_.world->scene().fingertips.stiffness;
+  state.samples.assign(count, {});
+  double mean_cost = 0.0;
+  for (int i = 0; i < count; ++i) {
+    MppiSample& sample = state.samples[i];
+    sample.action = actions[i];
+    sample.cost = CalcPlanCost(*problem_.world, outcomes[i],
+                               std::span(scores).subspan(first[i], first[i + 1] - first[i]),
+                               config_.weights, force_scale);
+    sample.X_WO_end = outcomes[i].end.bodies.front().X_WB();
+    mean_cost += sample.cost.total / count;
+    if (sample.cost.total < state.best_cost) {
+      state.best_cost = sample.cost.total;
+      state.best = sample.cost;
+      state.best_action = sample.action;
+    }
+  }
+  MoveMean(state);
+  ++state.iteration;
+  state.best_history.push_back(state.best_cost);
+  state.mean_history.push_back(mean_cost);
+  const int patience = config_.patience;
+  const bool stalled =
+      state.iteration > patience &&
+      state.best_history[state.iteration - 1 - patience] - state.best_cost < config_.progress;
+  state.converged = stalled || state.iteration >= config_.iterations;
+}
+
+void Mppi::MoveMean(MppiState& state) const {
+  const int count = static_cast<int>(state.samples.size());
+  double mean = 0.0, lowest = std::numeric_limits<double>::infinity();
+  for (const MppiSample& sample : state.samples) {
+    mean += sample.cost.total / count;
+    lowest = std::min(lowest, sample.cost.total);
+  }
+  double variance = 0.0;
+  for (const MppiSample& sample : state.samples) {
+    variance += (sample.cost.total - mean) * (sample.cost.total - mean) / count;
+  }
+  const double lambda = config_.temperature * std::max(std::sqrt(variance), 1e-9);
+  double sum = 0.0;
+  for (MppiSample& sample : state.samples) {
+    sample.weight = std::exp(-(sample.cost.total - lowest) / lambda);
+    sum += sample.weight;
+  }
+  std::fill(state.mean.begin(), state.mean.end(), 0.0);
+  for (MppiSample& sample : state.samples) {
+    sample.weight /= sum;
+    for (std::size_t d = 0; d < state.mean.size(); ++d) {
+      state.mean[d] += sample.weight * sample.action[d];
+    }
+  }
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,200 @@
+#include "app/trajectory/simulate_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/core/check.h"
+
+namespace pregrasp {
+namespace {
+
+// Steps between checks of the fingertip spheres while planning; certification checks each step.
+constexpr int kTipCheckEvery = 4;
+constexpr double kWorldRadius = 5.0;  // an object farther from its start than this has left [m]
+
+RigidTransform ContactFrame(const RigidTransform& X_WO, const FingertipState& tip) {
+  return X_WO * MakeTransform(FrameFromNormal(tip.nhat_O), tip.p_OC);
+}
+
+// Steps the world along targets and keeps the books of a PlanOutcome.
+class PlanRunner {
+ public:
+  PlanRunner(const World& world, const EnvironmentDistance& environment, const WorldState& start,
+             const PlanTiming& timing, Stepper stepper, std::vector<TraceRow>* trace)
+      : world_(world),
+        environment_(environment),
+        timing_(timing),
+        stepper_(stepper),
+        trace_(trace),
+        state_(start),
+        start_(start) {
+    if (trace_) trace_->push_back({state_, {}});
+    steps_per_knot_ = StepsIn(timing.stage_seconds / timing.knots);
+    steps_in_hold_ = StepsIn(timing.hold_seconds);
+  }
+
+  const WorldState& state() const { return state_; }
+  bool diverged() const { return outcome_.diverged; }
+
+  // Puts the fingers of a stage on or off. F has on, kept and contact.
+  template <typename F>
+  void StartStage(const std::array<F, kNumPlanningFingers>& fingers) {
+    outcome_.plan.stages.emplace_back();
+    for (int j = 0; j < kNumPlanningFingers; ++j) {
+      const Finger finger = static_cast<Finger>(j);
+      auto& used = outcome_.plan.stages.back()[j];
+      used.on = fingers[j].on;
+      used.kept = fingers[j].kept;
+      used.contact = fingers[j].contact;
+      if (!fingers[j].on) {
+        world_.LiftFinger(state_, finger);
+      } else if (!fingers[j].kept) {
+        world_.PutFinger(state_, finger, fingers[j].contact.p_OC);
+      }
+    }
+    outcome_.stage_starts.push_back(state_);
+  }
+
+  // Moves the targets of the fingers that are on in straight lines to `p_WTargets`.
+  void RunKnot(const std::array<Vector3, kNumPlanningFingers>& p_WTargets) {
+    std::array<Vector3, kNumPlanningFingers> from;
+    for (int j = 0; j < kNumPlanningFingers; ++j) {
+      from[j] = state_.fingers[j].p_WTarget;
+      if (state_.fingers[j].on) {
+        outcome_.plan.stages.back()[j].p_WTargets.push_back(p_WTargets[j]);
+      }
+    }
+    for (int i = 1; i <= steps_per_knot_ && !outcome_.diverged; ++i) {
+      const double s = static_cast<double>(i) / steps_per_knot_;
+      for (int j = 0; j < kNumPlanningFingers; ++j) {
+        if (state_.fingers[j].on) {
+          state_.fingers[j].p_WTarget = from[j] + s * (p_WTargets[j] - from[j]);
+        }
+      }
+      Step();
+    }
+  }
+
+  PlanOutcome Finish() {
+    outcome_.hold_start = state_;
+    for (int i = 0; i < steps_in_hold_ && !outcome_.diverged; ++i) Step();
+    outcome_.end = state_;
+    outcome_.seconds = state_.t - start_.t;
+    return std::move(outcome_);
+  }
+
+ private:
+  int StepsIn(double seconds) const {
+    return std::max(0, static_cast<int>(std::lround(seconds / world_.config().dt)));
+  }
+
+  void Step() {
+    contacts_.clear();
+    if (stepper_ == Stepper::kKernel) {
+      world_.Step(state_, trace_ ? &contacts_ : nullptr);
+    } else {
+      world_.StepWithSimbody(state_, &contacts_);
+    }
+    KeepBooks();
+    if (trace_) trace_->push_back({state_, contacts_});
+  }
+
+  void KeepBooks() {
+    const double dt = world_.config().dt;
+    const BodyState& object = state_.bodies.front();
+    outcome_.max_speed = std::max(outcome_.max_speed, object.v_WB.norm());
+    for (const ContactPoint& contact : contacts_) {
+      outcome_.max_penetration = std::max(outcome_.max_penetration, -contact.phi);
+    }
+    for (const FingertipState& tip : state_.fingers) {
+      if (!tip.on || !tip.touching) continue;
+      const double force = tip.f_W.norm();
+      outcome_.contact_seconds += dt;
+      if (tip.slipping) outcome_.slip_seconds += dt;
+      outcome_.effort += force * dt;
+      outcome_.max_force = std::max(outcome_.max_force, force);
+    }
+    const int tip_check_every = stepper_ == Stepper::kSimbody ? 1 : kTipCheckEvery;
+    if (state_.step % tip_check_every == 0) CheckTips(tip_check_every * dt);
+    const Vector3 travelled = object.p_WB - start_.bodies.front().p_WB;
+    if (!object.p_WB.allFinite() || !object.q_WB.coeffs().allFinite() ||
+        travelled.norm() > kWorldRadius) {
+      outcome_.diverged = true;
+    }
+  }
+
+  void CheckTips(double seconds) {
+    const std::vector<RigidTransform> X_WB = world_.GetPoses(state_);
+    bool overlaps = false;
+    std::array<Vector3, kNumPlanningFingers> p_WTip;
+    for (int j = 0; j < kNumPlanningFingers; ++j) {
+      const FingertipState& tip = state_.fingers[j];
+      if (!tip.on) continue;
+      const double radius = FingertipRadius(static_cast<Finger>(j));
+      p_WTip[j] = X_WB[0] * Vector3(tip.p_OC + radius * tip.nhat_O);
+      const double overlap = radius - environment_.Calc(p_WTip[j], X_WB).phi;
+      outcome_.max_tip_overlap = std::max(outcome_.max_tip_overlap, overlap);
+      overlaps |= overlap > kTipOverlapAllowed;
+    }
+    if (overlaps) outcome_.tip_overlap_seconds += seconds;
+    if (state_.fingers[0].on && state_.fingers[1].on) {
+      const double distance = (state_.fingers[0].p_OC - state_.fingers[1].p_OC).norm();
+      outcome_.min_tip_distance = std::min(outcome_.min_tip_distance, distance);
+    }
+  }
+
+  const World& world_;
+  const EnvironmentDistance& environment_;
+  const PlanTiming& timing_;
+  Stepper stepper_;
+  std::vector<TraceRow>* trace_;
+  WorldState state_;
+  WorldState start_;
+  std::vector<ContactPoint> contacts_;
+  PlanOutcome outcome_;
+  int steps_per_knot_ = 0, steps_in_hold_ = 0;
+};
+
+}  // namespace
+
+PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
+                         const WorldState& start, const RelativePlan& plan,
+                         const PlanTiming& timing) {
+  PlanRunner runner(world, environment, start, timing, Stepper::kKernel, nullptr);
+  for (const auto& stage : plan.stages) {
+    runner.StartStage(stage);
+    for (int k = 0; k < timing.knots && !runner.diverged(); ++k) {
+      const WorldState& state = runner.state();
+      const RigidTransform X_WO = state.bodies.front().X_WB();
+      std::array<Vector3, kNumPlanningFingers> p_WTargets;
+      for (int j = 0; j < kNumPlanningFingers; ++j) {
+        const FingertipState& tip = state.fingers[j];
+        if (!tip.on) continue;
+        const FingerStage::Knot& knot = stage[j].knots.at(k);
+        const Vector3 deflection(knot.tangent.x(), knot.tangent.y(), -knot.depth);
+        p_WTargets[j] = ContactFrame(X_WO, tip) * deflection + knot.travel_W;
+      }
+      runner.RunKnot(p_WTargets);
+    }
+  }
+  return runner.Finish();
+}
+
+PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
+                         const WorldState& start, const WorldPlan& plan, const PlanTiming& timing,
+                         Stepper stepper, std::vector<TraceRow>* trace) {
+  PlanRunner runner(world, environment, start, timing, stepper, trace);
+  for (const auto& stage : plan.stages) {
+    runner.StartStage(stage);
+    for (int k = 0; k < timing.knots && !runner.diverged(); ++k) {
+      std::array<Vector3, kNumPlanningFingers> p_WTargets;
+      for (int j = 0; j < kNumPlanningFingers; ++j) {
+        if (stage[j].on) p_WTargets[j] = stage[j].p_WTargets.at(k);
+      }
+      runner.RunKnot(p_WTargets);
+    }
+  }
+  return runner.Finish();
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "app/dynamics/world.h"
+#include "app/geometry/signed_distance.h"
+#include "app/trajectory/plan.h"
+
+namespace pregrasp {
+
+/// What a simulated plan did: everything that its cost and its verdict are made from.
+struct PlanOutcome {
+  WorldPlan plan;                        ///< with the targets that were used
+  std::vector<WorldState> stage_starts;  ///< the state when each stage begins, its fingers put on
+  WorldState end;                        ///< after the hold
+  WorldState hold_start;                 ///< when the last target is reached
+
+  double seconds = 0.0;              ///< simulated, hold included
+  double contact_seconds = 0.0;      ///< summed over fingers, while touching
+  double slip_seconds = 0.0;         ///< of these, at the cone's limit
+  double effort = 0.0;               ///< integral of the summed |f| over time [N s]
+  double max_force = 0.0;            ///< [N]
+  double max_speed = 0.0;            ///< of the object's origin [m/s]
+  double max_penetration = 0.0;      ///< between bodies [m]; by Stepper::kSimbody only
+  double max_tip_overlap = 0.0;      ///< deepest overlap of a touching fingertip sphere with the
+                                     ///< surroundings [m]
+  double tip_overlap_seconds = 0.0;  ///< time with more than kTipOverlapAllowed
+  double min_tip_distance = 1e9;     ///< between the two fingertips while both are on [m]
+  bool diverged = false;             ///< a body left the scene or the state is not finite
+};
+
+/// Honesty rule 4: a fingertip sphere may overlap the environment by at most this [m].
+inline constexpr double kTipOverlapAllowed = 0.001;
+
+/// Which stepper runs.
+enum class Stepper { kKernel, kSimbody };
+
+/// One row of a trace: the state after a step and the contacts of that step.
+struct TraceRow {
+  WorldState state;
+  std::vector<ContactPoint> contacts;
+};
+
+/// Simulates a relative plan from `start` through its stages and the hold.
+PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
+                         const WorldState& start, const RelativePlan& plan,
+                         const PlanTiming& timing);
+
+/// Simulates a plan whose targets are given in the world, by either stepper.
+/// @param trace  filled with one row a step if given, the start first.
+PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
+                         const WorldState& start, const WorldPlan& plan, const PlanTiming& timing,
+                         Stepper stepper, std::vector<TraceRow>* trace = nullptr);
+
+}  // namespace pregrasp
