@@ -1,0 +1,70 @@
+#include "app/trajectory/certify.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/trajectory/ruler_fixture.h"
+
+namespace pregrasp {
+namespace {
+
+// One finger presses the top of the ruler and its target travels along +x.
+WorldPlan MakeDrag(double depth, double travel) {
+  WorldPlan plan;
+  plan.stages.resize(1);
+  WorldPlan::Finger& index = plan.stages[0][1];
+  index.on = true;
+  index.contact = {true, Vector3(0.0, 0.0, 0.0015), Vector3::UnitZ()};
+  for (int k = 1; k <= 4; ++k) {
+    index.p_WTargets.emplace_back(-0.16 + travel * k / 4, 0.0, 0.003 - depth);
+  }
+  return plan;
+}
+
+class CertifyTest : public ::testing::Test {
+ protected:
+  Certificate Certify(const WorldPlan& plan) {
+    StepConfig half;
+    half.dt = ruler_.world.config().dt / 2;
+    const World half_world(ruler_.scene, half);
+    return CertifyPlan(ruler_.world, half_world, ruler_.environment, ruler_.world.InitialState(),
+                       plan, PlanTiming(), CertifyConfig());
+  }
+  RulerProblem ruler_;
+};
+
+TEST_F(CertifyTest, ADragThatEndsAtRestIsCertifiedAtBothSteps) {
+  const Certificate result = Certify(MakeDrag(0.01, 0.06));
+  EXPECT_TRUE(result.certified) << CertifyReasonText(result.reasons.front());
+  EXPECT_GT(result.full.end.bodies[0].p_WB.x(), -0.16 + 0.04);
+  EXPECT_LT(result.step_shift, 0.002);
+  // Every step of 0.8 s and of the 1.5 s hold, and the start.
+  EXPECT_EQ(result.trace.size(), static_cast<std::size_t>(std::lround(2.3 * 240)) + 1);
+}
+
+TEST_F(CertifyTest, APlanWithoutContactIsNotCertified) {
+  WorldPlan plan;
+  plan.stages.resize(1);
+  const Certificate result = Certify(plan);
+  EXPECT_FALSE(result.certified);
+  EXPECT_EQ(result.reasons.front(), CertifyReason::kNeverTouches);
+}
+
+TEST_F(CertifyTest, ARulerDraggedOffTheTableIsNotCertified) {
+  const Certificate result = Certify(MakeDrag(0.01, 0.40));
+  EXPECT_FALSE(result.certified);
+}
+
+TEST_F(CertifyTest, AFingertipInsideTheTableIsNotCertified) {
+  // Pushing the thin end face from behind, the fingertip's sphere reaches into the table.
+  WorldPlan plan;
+  plan.stages.resize(1);
+  plan.stages[0][1].on = true;
+  plan.stages[0][1].contact = {true, Vector3(-0.15, 0.0, 0.0), -Vector3::UnitX()};
+  plan.stages[0][1].p_WTargets.assign(4, Vector3(-0.308, 0.0, 0.0015));
+  const Certificate result = Certify(plan);
+  ASSERT_FALSE(result.certified);
+  EXPECT_EQ(result.reasons.front(), CertifyReason::kTipOverlap);
+}
+
+}  // namespace
+}  // namespace pregrasp

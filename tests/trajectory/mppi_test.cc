@@ -1,0 +1,114 @@
+#include "app/trajectory/mppi.h"
+
+#include <gtest/gtest.h>
+
+#include "app/core/error.h"
+#include "tests/trajectory/ruler_fixture.h"
+
+namespace pregrasp {
+namespace {
+
+MppiConfig QuickConfig() {
+  MppiConfig config;
+  config.samples = 24;
+  config.iterations = 6;
+  return config;
+}
+
+MppiState RunIterations(const Mppi& mppi, int iterations, int threads) {
+  ThreadPool pool(threads);
+  MppiState state = mppi.Start();
+  for (int i = 0; i < iterations; ++i) mppi.Step(state, pool);
+  return state;
+}
+
+void ExpectSameBits(const MppiState& a, const MppiState& b) {
+  EXPECT_EQ(a.mean, b.mean);
+  EXPECT_EQ(a.best_action, b.best_action);
+  EXPECT_EQ(a.best_history, b.best_history);
+  EXPECT_EQ(a.mean_history, b.mean_history);
+}
+
+TEST(MppiTest, DragsTheRulerOverTheEdge) {
+  const RulerProblem ruler;
+  int solved = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Mppi mppi(ruler.Make(2, seed), MppiConfig());
+    ThreadPool pool(2);
+    MppiState state = mppi.Start();
+    while (!state.converged) mppi.Step(state, pool);
+    const PlanOutcome outcome = mppi.Simulate(state.best_action);
+    const double overhang = (outcome.end.bodies[0].X_WB() * Vector3(0.15, 0, 0)).x();
+    solved += overhang > 0.06;
+    EXPECT_LE(outcome.max_force, ruler.scene.fingertips.max_force * (1 + 1e-9));
+  }
+  EXPECT_GE(solved, 2);
+}
+
+TEST(MppiTest, OneAndTwoThreadsGiveTheSameBits) {
+  const RulerProblem ruler;
+  const Mppi mppi(ruler.Make(1, 7), QuickConfig());
+  ExpectSameBits(RunIterations(mppi, 3, 1), RunIterations(mppi, 3, 2));
+}
+
+TEST(MppiTest, GoingBackAndOnAgainGivesTheSameBits) {
+  const RulerProblem ruler;
+  const Mppi mppi(ruler.Make(1, 7), QuickConfig());
+  ThreadPool pool(1);
+  MppiState state = RunIterations(mppi, 1, 1);
+  const MppiState earlier = state;
+  mppi.Step(state, pool);
+  mppi.Step(state, pool);
+  MppiState again = earlier;
+  mppi.Step(again, pool);
+  mppi.Step(again, pool);
+  ExpectSameBits(state, again);
+}
+
+TEST(MppiTest, AForkWithAnotherSigmaDiffers) {
+  const RulerProblem ruler;
+  MppiConfig wide = QuickConfig();
+  wide.sigma = 1.5;
+  const Mppi mppi(ruler.Make(1, 7), QuickConfig()), fork(ruler.Make(1, 7), wide);
+  ThreadPool pool(1);
+  MppiState a = RunIterations(mppi, 2, 1);
+  MppiState b = a;
+  mppi.Step(a, pool);
+  fork.Step(b, pool);
+  EXPECT_NE(a.mean, b.mean);
+}
+
+TEST(MppiTest, TheBestCostNeverRisesAndWeightsSumToOne) {
+  const RulerProblem ruler;
+  const Mppi mppi(ruler.Make(3, 2), QuickConfig());
+  const MppiState state = RunIterations(mppi, 5, 2);
+  for (std::size_t i = 1; i < state.best_history.size(); ++i) {
+    EXPECT_LE(state.best_history[i], state.best_history[i - 1]);
+  }
+  double sum = 0.0;
+  for (const MppiSample& sample : state.samples) sum += sample.weight;
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+TEST(MppiTest, APlanWithoutContactIsTheWorstKindOfRest) {
+  const RulerProblem ruler;
+  const Mppi mppi(ruler.Make(2, 1), QuickConfig());
+  std::vector<double> action(mppi.Start().mean.size(), -5.0);  // all fingers off
+  const PlanOutcome outcome = mppi.Simulate(action);
+  EXPECT_EQ(outcome.contact_seconds, 0.0);
+  const auto states = StatesToScore(ruler.world, outcome);
+  const auto scores = ruler.scorer.Score(states);
+  const PlanCost cost = CalcPlanCost(ruler.world, outcome, scores, CostWeights(), 0.7);
+  EXPECT_EQ(cost.no_contact, CostWeights().no_contact);
+  EXPECT_NEAR(cost.total, CostWeights().no_contact, 1e-3);
+}
+
+TEST(MppiTest, BadConfigurationsAreBadInput) {
+  const RulerProblem ruler;
+  MppiConfig config;
+  config.samples = 1;
+  EXPECT_THROW(Mppi(ruler.Make(0, 1), config), InputError);
+}
+
+}  // namespace
+}  // namespace pregrasp
