@@ -138,7 +138,7 @@ struct World::Impl {
     collision.FindContacts(kernels, scratch->motions, config.dt, &scratch->collision,
                            &scratch->contacts);
     scratch->solver.SetContacts(config, kernels, scratch->motions, scratch->contacts, state.cache);
-    for (int f = 0; f < kNumPlanningFingers; ++f) {
+    for (int f = 0; f < kNumFingers; ++f) {
       if (!state.fingers[f].on) continue;
       scratch->solver.AddFinger(
           kernels[0], scratch->motions[0],
@@ -195,15 +195,12 @@ std::vector<RigidTransform> World::GetPoses(const WorldState& state) const {
 }
 
 void World::PutFinger(WorldState& state, Finger finger, const Vector3& p_OC) const {
-  const int f = static_cast<int>(finger);
-  PREGRASP_CHECK(f < kNumPlanningFingers, FingerName(finger));
-  PlaceFinger(impl_->object_surface, state.bodies[0].X_WB(), p_OC, &state.fingers[f]);
+  PlaceFinger(impl_->object_surface, state.bodies[0].X_WB(), p_OC,
+              &state.fingers[static_cast<int>(finger)]);
 }
 
 void World::LiftFinger(WorldState& state, Finger finger) const {
-  const int f = static_cast<int>(finger);
-  PREGRASP_CHECK(f < kNumPlanningFingers, FingerName(finger));
-  state.fingers[f] = {};
+  state.fingers[static_cast<int>(finger)] = {};
 }
 
 void World::Step(WorldState& state, std::vector<ContactPoint>* contacts) const {

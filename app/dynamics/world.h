@@ -40,7 +40,7 @@ struct BodyState {
   RigidTransform X_WB() const { return MakeTransform(q_WB, p_WB); }
 };
 
-/// One planning finger: a massless point held by a spring to a target, touching the object (body 0)
+/// One finger: a massless point held by a spring to a target, touching the object (body 0)
 /// from outside with a friction cone. The law is the paper's f = -k (p - p_target), with damping,
 /// f.n >= 0, |f_t| <= mu f_n, |f| <= cap; app/dynamics/README.md states it in full.
 struct FingertipState {
@@ -73,7 +73,7 @@ struct WorldState {
   std::int64_t step = 0;
   double t = 0.0;
   std::vector<BodyState> bodies;  ///< the movable bodies in scene order; the object first
-  std::array<FingertipState, kNumPlanningFingers> fingers;
+  std::array<FingertipState, kNumFingers> fingers;  ///< a plan uses thumb and index, a lift all
   /// Impulses of the last step by (body pair, feature), to start the next one from; opaque to
   /// callers.
   struct CachedImpulse {

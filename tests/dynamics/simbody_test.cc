@@ -22,7 +22,7 @@ double CompareSteppers(const World& world, int blocks, WorldState* state) {
         largest = std::max({largest, (x.p_WB - y.p_WB).norm(), (x.v_WB - y.v_WB).norm(),
                             (x.w_WB - y.w_WB).norm(), (x.q_WB.coeffs() - y.q_WB.coeffs()).norm()});
       }
-      for (int f = 0; f < kNumPlanningFingers; ++f) {
+      for (int f = 0; f < kNumFingers; ++f) {
         largest = std::max(largest, (state->fingers[f].p_WF - oracle.fingers[f].p_WF).norm());
       }
     }
