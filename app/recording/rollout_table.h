@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "app/dynamics/world.h"
+#include "app/scene/scene.h"
+
+namespace pregrasp {
+
+/// The first line of rollout.csv, with its line break: t, then for the object p_WO_*, q_WO_*
+/// (w, x, y, z), w_WO_* and v_WO_*, then the same prefixed NAME_ for each other movable body in
+/// scene order, then for each planning finger FINGER_on (0 or 1), FINGER_p_OC_*, FINGER_target_W_*
+/// and FINGER_f_W_*. SI units; numbers are the shortest text that reads back as the same double.
+std::string RolloutHeader(const Scene& scene);
+
+/// One line of it.
+std::string RolloutRow(const WorldState& state);
+
+}  // namespace pregrasp
