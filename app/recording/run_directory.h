@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,44 +14,67 @@
 
 namespace pregrasp {
 
-/// Writes a run directory: everything goes to DIR.partial, and Finish renames it to DIR, so that
-/// DIR is complete or absent at every moment. A finished run at DIR is replaced by that rename.
+/// What a run is a function of besides its scene, and what else its files say about it.
+struct RunInfo {
+  std::uint64_t seed = 1;
+  double dt = StepConfig{}.dt;  ///< the step of the certified simulation [s]
+  /// Versions of libraries this folder cannot ask for itself ("simbody", "fcl", "assimp", "mesa");
+  /// added to those it can (BuildLibraries).
+  std::map<std::string, std::string> libraries;
+};
+
+/// Writes a run directory (app/recording/README.md has every file's schema). All goes to
+/// DIR.partial, and Finish puts that in the place of DIR in one rename, so that DIR is absent, the
+/// old run or the new run at every moment, also when this process is killed. One process at a time
+/// may write a DIR.
+///
+/// Every function throws InputError, with one line that says why, when the disk is full, read-only
+/// or the like; the destructor then removes all that was written.
 class RunDirectory {
  public:
-  /// @throws InputError when DIR holds something that is not a run, is being written by another
+  /// Locks DIR, clears away what a killed run left, and writes scene.json and meshes/.
+  /// @param scene  validated and loaded.
+  /// @throws InputError when DIR holds anything but a finished run, is being written by another
   /// process, or cannot be written.
-  explicit RunDirectory(std::filesystem::path directory);
-  /// Removes DIR.partial if Finish was not called.
+  RunDirectory(const std::filesystem::path& directory, const Scene& scene, RunInfo info = {});
+  /// Removes DIR.partial if Finish did not succeed; DIR is then what it was before.
   ~RunDirectory();
 
-  /// DIR.partial, for files others write (frames/).
+  /// DIR.partial, for files that others write; whatever is in it at Finish belongs to the run.
   const std::filesystem::path& partial() const;
   const std::filesystem::path& directory() const;
 
-  /// scene.json and meshes/: the resolved scene.
-  void WriteScene(const Scene& scene);
+  /// Where the picture of the step that AddStep records next belongs: partial()/frames/NNNN_ID.png.
+  /// The folder is made.
+  std::filesystem::path NextPicture(const std::string& step_id) const;
 
   /// Appends the step to run.rawlog (a CActionCollection and a CSensoryFrame) and to steps.jsonl.
   void AddStep(const StepRecord& step);
 
-  /// Appends one row to rollout.csv; the header comes from the world at the first call.
-  void AddRolloutRow(const World& world, const WorldState& state);
+  /// Appends one row to rollout.csv. `state` is one of a world of this scene.
+  void AddRolloutRow(const WorldState& state);
 
-  /// Writes summary.json and manifest.json, closes all, renames.
-  /// @param summary   the fields of summary.json; `hash` is filled in here.
-  /// @param settings  the resolved configuration and seed, for manifest.json.
-  void Finish(nlohmann::json summary, const nlohmann::json& settings);
+  /// Writes summary.json and manifest.json, closes everything and puts the run at DIR. Also for an
+  /// interrupted run, with status "interrupted": what was recorded until then is a valid run.
+  /// @param summary        any of the fields of summary.json, nested as there; those left out
+  /// become null, but for scene, seed, within_rules, physics {mu_tip, max_force_N, dt} and hash,
+  /// which are known here.
+  /// @param configuration  the resolved configuration, for manifest.json.
+  void Finish(const nlohmann::json& summary, const nlohmann::json& configuration);
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// A run directory read back. @throws InputError if `directory` is not a finished run.
+/// A run directory read back.
 struct LoadedRun {
   nlohmann::json summary, manifest, scene;
   std::vector<StepRecord> steps;
 };
+
+/// @throws InputError if `directory` is not a finished run or a file of it cannot be read. Does not
+/// compare hashes: see VerifyManifest.
 LoadedRun LoadRun(const std::filesystem::path& directory);
 
 }  // namespace pregrasp

@@ -1,0 +1,127 @@
+#include "app/recording/run_directory.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "app/core/check.h"
+#include "app/core/sha256.h"
+#include "app/recording/build_info.h"
+#include "app/recording/checked_file.h"
+#include "app/recording/json_text.h"
+#include "app/recording/manifest.h"
+#include "app/recording/partial_directory.h"
+#include "app/recording/rawlog.h"
+#include "app/recording/rollout_table.h"
+#include "app/recording/scene_file.h"
+#include "app/recording/summary.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json RawlogHeader(const Scene& scene, const RunInfo& info) {
+  return {{"schema", "pregrasp.rawlog/1"},
+          {"planner_version", ProgramVersion()},
+          {"git_hash", GitHash()},
+          {"scene", scene.name},
+          {"seed", info.seed}};
+}
+
+Json ManifestFields(const RunInfo& info, const nlohmann::json& configuration) {
+  std::map<std::string, std::string> libraries = BuildLibraries();
+  libraries.insert(info.libraries.begin(), info.libraries.end());
+  return {{"planner_version", ProgramVersion()},
+          {"git_hash", GitHash()},
+          {"libraries", libraries},
+          {"seed", info.seed},
+          {"configuration", configuration}};
+}
+
+bool IsStepId(const std::string& id) {
+  return !id.empty() && std::all_of(id.begin(), id.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '.' || c == '_' || c == '-';
+  });
+}
+
+// The bytes of a file, none if it does not exist.
+std::string ReadIfThere(const fs::path& file) {
+  std::error_code error;
+  return fs::exists(file, error) ? ReadFile(file) : "";
+}
+
+}  // namespace
+
+struct RunDirectory::Impl {
+  Impl(const fs::path& path, const Scene& s, RunInfo i)
+      : scene(s),
+        info(std::move(i)),
+        directory(path),
+        partial(path),
+        steps(partial.path() / "steps.jsonl"),
+        rollout(partial.path() / "rollout.csv"),
+        rawlog(partial.path() / "run.rawlog", RawlogHeader(scene, info)) {}
+
+  Scene scene;
+  RunInfo info;
+  fs::path directory;
+  PartialDirectory partial;
+  CheckedFile steps, rollout;
+  RawlogWriter rawlog;
+  int num_steps = 0;
+};
+
+RunDirectory::RunDirectory(const fs::path& directory, const Scene& scene, RunInfo info) {
+  ValidateScene(scene);
+  impl_ = std::make_unique<Impl>(directory, scene, std::move(info));
+  WriteScene(partial(), impl_->scene, impl_->info.dt);
+  impl_->rollout.Write(RolloutHeader(impl_->scene));
+}
+
+RunDirectory::~RunDirectory() = default;
+
+const fs::path& RunDirectory::partial() const { return impl_->partial.path(); }
+const fs::path& RunDirectory::directory() const { return impl_->directory; }
+
+fs::path RunDirectory::NextPicture(const std::string& step_id) const {
+  const fs::path frames = partial() / "frames";
+  MakeFolder(frames);
+  return frames / PictureName(impl_->num_steps + 1, step_id);
+}
+
+void RunDirectory::AddStep(const StepRecord& step) {
+  PREGRASP_CHECK(IsStepId(step.id), step.id);
+  const int number = impl_->num_steps + 1;
+  impl_->steps.Write(FormatJson(StepToJson(step, number)) + '\n');
+  impl_->rawlog.Add(step, number);
+  impl_->num_steps = number;
+}
+
+void RunDirectory::AddRolloutRow(const WorldState& state) {
+  const auto& bodies = impl_->scene.bodies;
+  PREGRASP_CHECK(static_cast<std::ptrdiff_t>(state.bodies.size()) ==
+                     std::count_if(bodies.begin(), bodies.end(),
+                                   [](const Body& body) { return body.movable(); }),
+                 state.bodies.size());
+  impl_->rollout.Write(RolloutRow(state));
+}
+
+void RunDirectory::Finish(const nlohmann::json& summary, const nlohmann::json& configuration) {
+  impl_->steps.Close();
+  impl_->rollout.Close();
+  impl_->rawlog.Close();
+  // MRPT's tools look for a log's pictures in <name of the log>_Images.
+  std::error_code error;
+  if (fs::exists(partial() / "frames", error)) MakeLink(partial() / "run_Images", "frames");
+  const std::string hash =
+      Sha256(ReadFile(partial() / "rollout.csv") + ReadIfThere(partial() / "motion.csv"));
+  WriteFile(partial() / "summary.json",
+            FormatJsonIndented(
+                BuildSummary(summary, impl_->scene, impl_->info.seed, impl_->info.dt, hash)));
+  WriteManifest(partial(), ManifestFields(impl_->info, configuration));
+  impl_->partial.Commit();
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+#include "app/core/math.h"
+#include "app/core/rng.h"
+#include "app/recording/checked_file.h"
+#include "app/recording/run_directory.h"
+
+namespace pregrasp {
+
+/// Where temporary folders are made: in memory if the system allows it, for a run waits for the
+/// disk.
+inline std::filesystem::path FastTemporaryPlace() {
+  return access("/dev/shm", W_OK) == 0 ? "/dev/shm" : std::filesystem::temp_directory_path();
+}
+
+/// A new folder that is removed with everything in it.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const std::filesystem::path& place = FastTemporaryPlace()) {
+    std::string name = (place / "pregrasp-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline Vector3 RandomVector(Rng& rng) { return {rng.Normal(), rng.Normal(), rng.Normal()}; }
+
+inline RigidTransform RandomPose(Rng& rng) {
+  const Quaternion q(rng.Normal(), rng.Normal(), rng.Normal(), rng.Normal());
+  return MakeTransform(q.normalized(), RandomVector(rng));
+}
+
+/// A tetrahedron with vertices that no short decimal holds.
+inline TriangleMesh RandomTetrahedron(Rng& rng) {
+  TriangleMesh mesh;
+  mesh.V.resize(4, 3);
+  for (int i = 0; i < 4; ++i) mesh.V.row(i) = RandomVector(rng);
+  mesh.F.resize(4, 3);
+  mesh.F << 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2;
+  return mesh;
+}
+
+inline MassProperties RandomMass(Rng& rng) {
+  return {
+      rng.Uniform(0.01, 1.0), 0.01 * RandomVector(rng),
+      Vector3(rng.Uniform(2.0, 3.0), rng.Uniform(2.0, 3.0), rng.Uniform(2.0, 3.0)).asDiagonal()};
+}
+
+/// A valid scene with every kind of shape, the object's included in `seed`, in random places.
+inline Scene SampleScene(std::uint64_t seed = 1) {
+  Rng rng(seed);
+  Scene scene;
+  scene.name = "sample";
+  scene.gravity = {0.1, -0.0, -9.81};
+  scene.fingertips = {0.7, 11.5, 52.5, 1.0 / 3.0};
+  scene.camera = CameraConfig{RandomVector(rng), RandomVector(rng), 31.7};
+  const auto add = [&](const std::string& name, Shape shape, bool movable) {
+    Body body;
+    body.name = name;
+    body.shape = std::move(shape);
+    body.X_WB = RandomPose(rng);
+    body.friction = rng.Uniform(0.2, 0.6);
+    if (movable) body.mass_properties = RandomMass(rng);
+    scene.bodies.push_back(std::move(body));
+  };
+  const Mesh mesh{"a file.obj", 0.001, RandomTetrahedron(rng)};
+  add("object", mesh, true);
+  add("table", Box{{0.8, 0.6, 1.0 / 7.0}}, false);
+  Union inner{{{Sphere{0.013}, RandomPose(rng)}, {mesh, RandomPose(rng)}}};
+  add("tool", Union{{{Cylinder{0.02, 0.1}, RandomPose(rng)}, {inner, RandomPose(rng)}}}, true);
+  add("tool_2", Capsule{0.011, 0.23}, true);
+  add("scan", Cloud{"scan.ply", 2.0, RandomTetrahedron(rng).V, RandomTetrahedron(rng)}, false);
+  return scene;
+}
+
+/// Step `i` of a run of SampleScene.
+inline StepRecord SampleStep(int i, std::uint64_t seed = 1) {
+  Rng rng(seed, RngStream::kTest, static_cast<std::uint32_t>(i));
+  StepRecord step;
+  step.id = "sim." + std::to_string(i);
+  step.stage = "sim";
+  step.t = i / 240.0;
+  for (const char* name : {"object", "tool", "tool_2"})
+    step.bodies.push_back({name, RandomPose(rng)});
+  for (const Finger finger : {Finger::kThumb, Finger::kIndex}) {
+    step.fingers.push_back(
+        {finger, i % 2 == 0, RandomVector(rng), RandomVector(rng), RandomVector(rng)});
+  }
+  step.details = {
+      {"cost", rng.Normal()}, {"sweeps", i}, {"note", "\"quoted\", line\nbreak, \xc3\xa9"}};
+  return step;
+}
+
+/// A state of the world of SampleScene.
+inline WorldState SampleState(int i, std::uint64_t seed = 1) {
+  Rng rng(seed, RngStream::kTest, static_cast<std::uint32_t>(i), 1);
+  WorldState state;
+  state.t = i / 240.0;
+  state.bodies.resize(3);
+  for (BodyState& body : state.bodies) {
+    const RigidTransform X_WB = RandomPose(rng);
+    body = {Quaternion(X_WB.linear()), X_WB.translation(), RandomVector(rng), RandomVector(rng)};
+  }
+  for (FingertipState& finger : state.fingers) {
+    finger.on = i % 2 == 1;
+    finger.p_OC = RandomVector(rng);
+    finger.p_WTarget = RandomVector(rng);
+    finger.f_W = RandomVector(rng);
+  }
+  return state;
+}
+
+/// The smallest PNG: one white pixel.
+inline const std::string kOnePixelPng(
+    "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\0\0\0\0:~\x9bU"
+    "\0\0\0\nIDATx\x9c\x63\xf8\x0f\0\1\1\1\0\xb1\x38\xf6\x14\0\0\0\0IEND\xae\x42\x60\x82",
+    67);
+
+/// Writes a whole run of SampleScene with `steps` steps and, if asked, their pictures.
+inline void WriteSampleRun(const std::filesystem::path& directory, int steps = 5,
+                           bool pictures = false, std::uint64_t seed = 1) {
+  RunInfo info;
+  info.seed = seed;
+  info.libraries = {{"simbody", "3.7"}};
+  RunDirectory run(directory, SampleScene(seed), info);
+  for (int i = 0; i < steps; ++i) {
+    const StepRecord step = SampleStep(i, seed);
+    if (pictures) WriteFile(run.NextPicture(step.id), kOnePixelPng);
+    run.AddStep(step);
+    run.AddRolloutRow(SampleState(i, seed));
+  }
+  run.Finish({{"status", "interrupted"}}, {{"mppi", {{"samples", 128}}}});
+}
+
+}  // namespace pregrasp
