@@ -44,8 +44,9 @@ SetEncoder SetEncoder::Load(const TensorFile& file, const std::string& prefix) {
     const std::string first = LayerName(prefix, l, 0);
     const auto weight = file.Get<float>(first + ".weight", {widths[0], inputs});
     std::vector<float> shift;
-    for (int o = 0; o < widths[0]; ++o) {
-      shift.insert(shift.end(), weight.begin() + o * inputs, weight.begin() + o * inputs + kAxes);
+    for (std::ptrdiff_t o = 0; o < widths[0]; ++o) {
+      const auto row = weight.begin() + o * inputs;
+      shift.insert(shift.end(), row, row + kAxes);
     }
     Level level{Linear(inputs, widths[0], weight, file.Get<float>(first + ".bias", {widths[0]})),
                 Linear(kAxes, widths[0], shift, std::vector<float>(widths[0], 0.0F)),

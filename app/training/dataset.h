@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/networks/contact_features.h"
+#include "app/networks/grasp_generator.h"
+#include "app/networks/safetensors.h"
+
+namespace pregrasp {
+
+/// How far the surroundings are moved away for the feasibility tests behind a label [m]; the
+/// first, none at all, is what the planner's own tests use.
+inline constexpr std::array<double, 5> kReliefs{0.0, 0.005, 0.010, 0.020, 0.040};
+inline constexpr int kNumReliefs = static_cast<int>(kReliefs.size());
+
+/// One pose of an object among surroundings, as the networks see it.
+struct ContextRecord {
+  std::string kind;  ///< how it came about: "resting", "tilted", ..
+  RigidTransform X_WO = RigidTransform::Identity();
+  VectorX phi;                 ///< at the item's points [m]
+  std::vector<bool> occluded;  ///< of the item's points
+};
+
+/// A feasible grasp in one context of its item.
+struct GraspRecord {
+  int context = 0;
+  GraspPoints p_OC{};                     ///< of fingers not in `used`: zero
+  GraspPoints nhat_O{};                   ///< outward normals there
+  std::array<double, kNumFingers> phi{};  ///< to the surroundings, there [m]
+  std::array<bool, kNumFingers> used{};
+};
+
+/// One answer of the score function that is known: how many of `tries` completions of these
+/// contacts were feasible at each relief.
+struct LabelRecord {
+  int context = 0;
+  PlanningContacts contacts;
+  int tries = 0;
+  std::array<int, kNumReliefs> feasible{};
+
+  /// The label: the mean share over the reliefs.
+  double Value() const;
+};
+
+/// An object with all that was found out about it: the unit in which data is made, a pure function
+/// of (configuration, seed, index).
+struct DatasetItem {
+  std::int64_t index = 0;
+  std::string family, name;
+  double mass = 0.0;                 ///< [kg]
+  Vector3 p_OOcm = Vector3::Zero();  ///< centre of mass
+  MatrixX3 P_O, N_O;                 ///< cloud and normals; equally many points in all items
+  std::vector<ContextRecord> contexts;
+  std::vector<GraspRecord> grasps;
+  std::vector<LabelRecord> labels;
+};
+
+/// Items as tensors: tables item.*, context.*, grasp.*, label.*, where context.item, grasp.context
+/// and label.context are rows of the tables before. Lengths, distances and cosines are kept in
+/// single precision, poses in double.
+TensorFile ItemsToTensors(const std::vector<DatasetItem>& items);
+
+/// @throws InputError if a table is missing, of another shape, or refers to a row that is not.
+std::vector<DatasetItem> ItemsFromTensors(const TensorFile& file);
+
+/// A folder in which items are being made: one file each, so that a run that was cut off goes on
+/// where it was, and shards of a run (item i belongs to shard i mod n) can be made anywhere.
+class DatasetFolder {
+ public:
+  /// @param description  JSON of what decides the items (configuration, seed). A folder holds
+  ///   items of one description. @throws InputError if it already holds those of another.
+  DatasetFolder(std::filesystem::path folder, const std::string& description);
+
+  bool Has(std::int64_t index) const;
+  void Write(const DatasetItem& item) const;
+
+ private:
+  std::filesystem::path ItemPath(std::int64_t index) const;
+
+  std::filesystem::path folder_;
+};
+
+/// Puts items 0 .. count - 1, found in any of `folders`, together at `out`: shards of
+/// `items_per_shard` items and index.json with the description, counts per family and SHA-256 sums.
+/// The bytes depend on the items alone, not on the folders they were made in.
+/// @throws InputError if an item is missing or the folders' descriptions differ.
+void MergeDataset(const std::vector<std::filesystem::path>& folders, std::int64_t count,
+                  const std::filesystem::path& out, int items_per_shard = 64);
+
+struct Dataset {
+  std::string description;
+  std::string hash;  ///< SHA-256 of index.json, which names the data for the weights' metadata
+  std::vector<DatasetItem> items;
+};
+
+/// Reads a merged data set. @throws InputError for a missing or altered shard.
+Dataset ReadDataset(const std::filesystem::path& folder);
+
+}  // namespace pregrasp

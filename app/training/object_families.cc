@@ -1,0 +1,323 @@
+#include "app/training/object_families.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "app/core/check.h"
+#include "app/core/error.h"
+#include "app/training/procedural_mesh.h"
+
+namespace pregrasp {
+namespace {
+
+// Bulk densities [kg/m^3] of what the families are made of or hold.
+constexpr double kCarton[] = {150.0, 600.0};  // packed food, toys
+constexpr double kPaper[] = {650.0, 850.0};
+constexpr double kWood[] = {450.0, 750.0};
+constexpr double kPlastic[] = {900.0, 1250.0};
+constexpr double kLiquid[] = {500.0, 1050.0};  // half full to full
+constexpr double kCeramic[] = {2000.0, 2500.0};
+constexpr double kFoam[] = {60.0, 300.0};
+
+constexpr double kMinMass = 0.01, kMaxMass = 2.5;
+
+struct Draft {
+  std::string measures;
+  Shape shape;
+  double volume = 0.0;  // [m^3]
+  double density = 0.0;
+};
+
+double Draw(Rng& rng, const double (&range)[2]) { return rng.Uniform(range[0], range[1]); }
+
+std::string Millimetres(std::initializer_list<double> metres) {
+  std::string text;
+  for (const double m : metres) text += fmt::format("{}{:.0f}", text.empty() ? "" : "x", 1e3 * m);
+  return text + " mm";
+}
+
+Draft MakeBox(double x, double y, double z, double density) {
+  return {Millimetres({x, y, z}), Box{{x, y, z}}, x * y * z, density};
+}
+
+Draft MakeLathe(const std::vector<Vector2>& profile, double density) {
+  double radius = 0.0, low = profile[0].y(), high = low;
+  for (const Vector2& p : profile) {
+    radius = std::max(radius, p.x());
+    low = std::min(low, p.y());
+    high = std::max(high, p.y());
+  }
+  std::vector<Vector2> centred = profile;
+  for (Vector2& p : centred) p.y() -= 0.5 * (low + high);
+  TriangleMesh mesh = Lathe(centred);
+  const double volume = CalcVolume(mesh);
+  return {Millimetres({2.0 * radius, high - low}), MakeMeshShape(std::move(mesh)), volume, density};
+}
+
+PlacedShape Place(Shape shape, const Vector3& p, const Vector3& rpy = Vector3::Zero()) {
+  return {std::move(shape), MakeTransform(RotationFromRpy(rpy), p)};
+}
+
+// An outer wall, a rim and the inner wall back down: `outer` goes up, `thickness` is horizontal.
+std::vector<Vector2> Vessel(const std::vector<Vector2>& outer, double thickness, double floor) {
+  std::vector<Vector2> profile = outer;
+  for (auto p = outer.rbegin(); p != outer.rend(); ++p) {
+    const double z = std::max(p->y(), outer.front().y() + floor);
+    profile.emplace_back(std::max(p->x() - thickness, 0.3 * thickness), z);
+  }
+  return profile;
+}
+
+Draft Carton(Rng& rng) {
+  return MakeBox(rng.Uniform(0.05, 0.20), rng.Uniform(0.03, 0.14), rng.Uniform(0.04, 0.24),
+                 Draw(rng, kCarton));
+}
+
+Draft Book(Rng& rng) {
+  const double height = rng.Uniform(0.15, 0.30);
+  return MakeBox(height * rng.Uniform(0.62, 0.78), height, rng.Uniform(0.010, 0.045),
+                 Draw(rng, kPaper));
+}
+
+// Notebooks, tablets, tiles, cutting boards.
+Draft Slab(Rng& rng) {
+  const double length = rng.Uniform(0.12, 0.34);
+  return MakeBox(length, length * rng.Uniform(0.45, 0.95), rng.Uniform(0.003, 0.014),
+                 Draw(rng, kWood));
+}
+
+// Slats, spatulas, folding rules, bookmarks of board.
+Draft Strip(Rng& rng) {
+  return MakeBox(rng.Uniform(0.14, 0.45), rng.Uniform(0.018, 0.055), rng.Uniform(0.002, 0.010),
+                 Draw(rng, kWood));
+}
+
+Draft Can(Rng& rng) {
+  const double r = rng.Uniform(0.020, 0.055), h = rng.Uniform(0.03, 0.20);
+  return {Millimetres({2.0 * r, h}), Cylinder{r, h}, kPi * r * r * h, Draw(rng, kLiquid)};
+}
+
+// Pens, candles, batteries, dowels: lying, or standing when stout.
+Draft Rod(Rng& rng) {
+  const double r = rng.Uniform(0.005, 0.016), h = rng.Uniform(0.08, 0.22);
+  return {Millimetres({2.0 * r, h}), Cylinder{r, h}, kPi * r * r * h, Draw(rng, kPlastic)};
+}
+
+// A foot, a flat well, a raised rim.
+Draft Plate(Rng& rng) {
+  const double r = rng.Uniform(0.070, 0.125), foot = r * rng.Uniform(0.50, 0.65);
+  const double rise = rng.Uniform(0.012, 0.028), t = rng.Uniform(0.004, 0.006);
+  const double well = foot * 1.05, base = 0.004;
+  return MakeLathe({{foot, 0.0},
+                    {well, base},
+                    {r, rise},
+                    {r, rise + 0.6 * t},
+                    {well, base + t},
+                    {0.3 * foot, base + t}},
+                   Draw(rng, kCeramic));
+}
+
+Draft Bowl(Rng& rng) {
+  const double r = rng.Uniform(0.055, 0.095), h = r * rng.Uniform(0.45, 0.85);
+  const double foot = r * rng.Uniform(0.35, 0.55), t = rng.Uniform(0.004, 0.006);
+  std::vector<Vector2> outer;
+  for (int k = 0; k <= 6; ++k) {
+    const double s = k / 6.0;
+    outer.emplace_back(foot + (r - foot) * std::sin(0.5 * kPi * s),
+                       h * (1.0 - std::cos(0.5 * kPi * s)));
+  }
+  return MakeLathe(Vessel(outer, t, t), Draw(rng, kCeramic));
+}
+
+Draft Cup(Rng& rng) {
+  const double r = rng.Uniform(0.028, 0.045), h = rng.Uniform(0.06, 0.14);
+  const double t = rng.Uniform(0.002, 0.004);
+  return MakeLathe(Vessel({{r * rng.Uniform(0.65, 1.0), 0.0}, {r, h}}, t, 0.004),
+                   Draw(rng, kPlastic));
+}
+
+// A body, a shoulder, a neck with its cap.
+Draft Bottle(Rng& rng) {
+  const double r = rng.Uniform(0.022, 0.042), h = rng.Uniform(0.11, 0.26);
+  const double neck = r * rng.Uniform(0.35, 0.6), body = h * rng.Uniform(0.6, 0.75);
+  return MakeLathe({{0.9 * r, 0.0}, {r, 0.004}, {r, body}, {neck, body + 0.15 * h}, {neck, h}},
+                   Draw(rng, kLiquid));
+}
+
+// Square section: spice jars, cartons of juice with a cap.
+Draft Flask(Rng& rng) {
+  const double x = rng.Uniform(0.04, 0.08), y = x * rng.Uniform(0.7, 1.0);
+  const double h = rng.Uniform(0.09, 0.22), body = h * rng.Uniform(0.75, 0.9);
+  const double corner = rng.Uniform(0.004, 0.010), neck = y * rng.Uniform(0.4, 0.6);
+  TriangleMesh mesh = SkinRings({RoundedRectangle(x, y, corner, -0.5 * h),
+                                 RoundedRectangle(x, y, corner, body - 0.5 * h),
+                                 RoundedRectangle(neck, neck, 0.5 * neck, body - 0.5 * h + 0.01),
+                                 RoundedRectangle(neck, neck, 0.5 * neck, 0.5 * h)});
+  const double volume = CalcVolume(mesh);
+  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), volume, Draw(rng, kLiquid)};
+}
+
+// A closed tub that flares, with a lid that stands out, or without.
+Draft Tub(Rng& rng) {
+  const double x = rng.Uniform(0.09, 0.20), y = x * rng.Uniform(0.6, 1.0);
+  const double h = rng.Uniform(0.04, 0.11), taper = rng.Uniform(0.80, 0.98);
+  const double corner = rng.Uniform(0.008, 0.022),
+               lip = rng.UniformInt(2) ? rng.Uniform(0.004, 0.010) : 0.0;
+  const double lid = rng.Uniform(0.006, 0.012), top = 0.5 * h;
+  std::vector<Ring> rings = {RoundedRectangle(taper * x, taper * y, taper * corner, -top),
+                             RoundedRectangle(x, y, corner, top - lid)};
+  if (lip > 0.0)
+    rings.push_back(RoundedRectangle(x + 2.0 * lip, y + 2.0 * lip, corner + lip, top - lid));
+  rings.push_back(RoundedRectangle(x + 2.0 * lip, y + 2.0 * lip, corner + lip, top));
+  TriangleMesh mesh = SkinRings(rings);
+  const double volume = CalcVolume(mesh);
+  return {Millimetres({x, y, h}) + (lip > 0.0 ? " with lip" : ""), MakeMeshShape(std::move(mesh)),
+          volume, Draw(rng, kCarton)};
+}
+
+// A shallow open tray.
+Draft Tray(Rng& rng) {
+  const double x = rng.Uniform(0.14, 0.30), y = x * rng.Uniform(0.5, 0.9);
+  const double h = rng.Uniform(0.015, 0.045), t = rng.Uniform(0.003, 0.006), corner = 0.015;
+  const double low = -0.5 * h, s = rng.Uniform(0.85, 1.0);
+  TriangleMesh mesh = SkinRings(
+      {RoundedRectangle(s * x, s * y, corner, low), RoundedRectangle(x, y, corner, low + h),
+       RoundedRectangle(x - 2.0 * t, y - 2.0 * t, corner - t, low + h),
+       RoundedRectangle(s * x - 2.0 * t, s * y - 2.0 * t, corner - t, low + t)});
+  const double volume = CalcVolume(mesh);
+  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), volume, Draw(rng, kPlastic)};
+}
+
+// Two arms at a right angle, centred on their common bounding box.
+Draft Bracket(Rng& rng) {
+  const double a = rng.Uniform(0.07, 0.18), b = rng.Uniform(0.05, 0.14);
+  const double t = rng.Uniform(0.008, 0.030), w = rng.Uniform(0.02, 0.08);
+  Union shape;
+  shape.parts = {Place(Box{{a, w, t}}, {0.0, 0.0, 0.5 * (t - b)}),
+                 Place(Box{{t, w, b}}, {0.5 * (t - a), 0.0, 0.0})};
+  return {Millimetres({a, w, b}), shape, w * t * (a + b - t), Draw(rng, kWood)};
+}
+
+// A C of three bars.
+Draft Clamp(Rng& rng) {
+  const double a = rng.Uniform(0.06, 0.15), b = rng.Uniform(0.07, 0.18);
+  const double t = rng.Uniform(0.012, 0.030), w = rng.Uniform(0.02, 0.06);
+  Union shape;
+  shape.parts = {Place(Box{{a, t, w}}, {0.0, 0.5 * (b - t), 0.0}),
+                 Place(Box{{a, t, w}}, {0.0, 0.5 * (t - b), 0.0}),
+                 Place(Box{{t, b, w}}, {0.5 * (t - a), 0.0, 0.0})};
+  return {Millimetres({a, b, w}), shape, w * t * (2.0 * a + b - 2.0 * t), Draw(rng, kPlastic)};
+}
+
+// A cup with a handle of three bars.
+Draft Mug(Rng& rng) {
+  const double r = rng.Uniform(0.034, 0.046), h = rng.Uniform(0.07, 0.11), t = 0.004;
+  const double reach = rng.Uniform(0.025, 0.040), bar = 0.010, span = 0.6 * h;
+  const auto profile = Vessel({{0.92 * r, -0.5 * h}, {r, 0.5 * h}}, t, 0.006);
+  TriangleMesh mesh = Lathe(profile);
+  const double volume = CalcVolume(mesh) + bar * bar * (2.0 * reach + span);
+  const double shift = 0.5 * reach;  // keeps the whole centred
+  Union shape;
+  shape.parts = {
+      Place(MakeMeshShape(std::move(mesh)), {-shift, 0.0, 0.0}),
+      Place(Box{{reach, bar, bar}}, {r + 0.5 * reach - 0.004 - shift, 0.0, 0.5 * (span - bar)}),
+      Place(Box{{reach, bar, bar}}, {r + 0.5 * reach - 0.004 - shift, 0.0, 0.5 * (bar - span)}),
+      Place(Box{{bar, bar, span}}, {r + reach - 0.5 * bar - shift, 0.0, 0.0})};
+  return {Millimetres({2.0 * r + reach, 2.0 * r, h}), shape, volume, Draw(rng, kCeramic)};
+}
+
+Draft Hammer(Rng& rng) {
+  const double length = rng.Uniform(0.18, 0.32), r = rng.Uniform(0.009, 0.015);
+  const double head = rng.Uniform(0.07, 0.12), t = rng.Uniform(0.022, 0.034);
+  Union shape;
+  shape.parts = {Place(Cylinder{r, length}, {0.0, 0.0, 0.0}, {0.0, 0.5 * kPi, 0.0}),
+                 Place(Box{{t, head, t}}, {0.5 * (length - t), 0.0, 0.0})};
+  const double volume = kPi * r * r * length + head * t * t;
+  return {Millimetres({length, head, t}), shape, volume, rng.Uniform(1200.0, 3500.0)};
+}
+
+Draft Screwdriver(Rng& rng) {
+  const double handle = rng.Uniform(0.07, 0.12), r = rng.Uniform(0.011, 0.018);
+  const double shaft = rng.Uniform(0.06, 0.15), thin = rng.Uniform(0.003, 0.005);
+  const Vector3 along(0.0, 0.5 * kPi, 0.0);
+  Union shape;
+  shape.parts = {Place(Capsule{r, handle - 2.0 * r}, {-0.5 * shaft, 0.0, 0.0}, along),
+                 Place(Cylinder{thin, shaft + r}, {0.5 * (handle - r), 0.0, 0.0}, along)};
+  const double volume = kPi * r * r * handle + kPi * thin * thin * shaft;
+  return {Millimetres({handle + shaft, 2.0 * r}), shape, volume, Draw(rng, kPlastic)};
+}
+
+Draft Pan(Rng& rng) {
+  const double r = rng.Uniform(0.06, 0.11), h = rng.Uniform(0.025, 0.06), t = 0.004;
+  const double handle = rng.Uniform(0.09, 0.15), w = rng.Uniform(0.018, 0.028);
+  TriangleMesh mesh = Lathe(Vessel({{0.9 * r, -0.5 * h}, {r, 0.5 * h}}, t, t));
+  const double volume = CalcVolume(mesh) + 0.012 * w * handle;
+  Union shape;
+  shape.parts = {Place(MakeMeshShape(std::move(mesh)), {-0.5 * handle, 0.0, 0.0}),
+                 Place(Box{{handle + 0.01, w, 0.012}}, {r - 0.005, 0.0, 0.5 * h - 0.012})};
+  return {Millimetres({2.0 * r + handle, 2.0 * r, h}), shape, volume, rng.Uniform(1200.0, 2600.0)};
+}
+
+Draft Ball(Rng& rng) {
+  const double r = rng.Uniform(0.025, 0.055);
+  return {Millimetres({2.0 * r}), Sphere{r}, 4.0 / 3.0 * kPi * r * r * r, Draw(rng, kFoam)};
+}
+
+// A bar of triangular section: cheese, door stops, toy roofs.
+Draft Wedge(Rng& rng) {
+  const double x = rng.Uniform(0.06, 0.16), y = rng.Uniform(0.05, 0.12),
+               h = rng.Uniform(0.03, 0.09);
+  const double apex = rng.Uniform(-0.5, 0.5) * x;
+  // Sections across y, as rings about -y: the skin is then outward as usual.
+  const auto section = [&](double at) {
+    return Ring{{-0.5 * x, at, -0.5 * h}, {apex, at, 0.5 * h}, {0.5 * x, at, -0.5 * h}};
+  };
+  TriangleMesh mesh = SkinRings({section(-0.5 * y), section(0.5 * y)});
+  const double volume = CalcVolume(mesh);
+  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), volume, Draw(rng, kWood)};
+}
+
+using Family = std::pair<std::string, std::function<Draft(Rng&)>>;
+
+const std::vector<Family>& Families() {
+  static const std::vector<Family> families = {
+      {"carton", Carton}, {"book", Book},       {"slab", Slab},
+      {"strip", Strip},   {"can", Can},         {"rod", Rod},
+      {"plate", Plate},   {"bowl", Bowl},       {"cup", Cup},
+      {"bottle", Bottle}, {"flask", Flask},     {"tub", Tub},
+      {"tray", Tray},     {"bracket", Bracket}, {"clamp", Clamp},
+      {"mug", Mug},       {"hammer", Hammer},   {"driver", Screwdriver},
+      {"pan", Pan},       {"ball", Ball},       {"wedge", Wedge}};
+  return families;
+}
+
+}  // namespace
+
+const std::vector<std::string>& ObjectFamilies() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Family& family : Families()) all.push_back(family.first);
+    return all;
+  }();
+  return names;
+}
+
+TrainingObject SampleObject(const std::string& family, Rng rng) {
+  const auto found = std::find_if(Families().begin(), Families().end(),
+                                  [&](const Family& f) { return f.first == family; });
+  if (found == Families().end()) throw InputError("", "family", "an object family", family);
+  Draft draft = found->second(rng);
+  PREGRASP_CHECK(draft.volume > 0.0, family, draft.measures);
+  TrainingObject object;
+  object.family = family;
+  object.name = family + " " + draft.measures;
+  object.shape = std::move(draft.shape);
+  object.mass = std::clamp(draft.volume * draft.density, kMinMass, kMaxMass);
+  return object;
+}
+
+}  // namespace pregrasp
