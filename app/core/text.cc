@@ -54,7 +54,8 @@ std::string FindNearest(std::string_view word, const std::vector<std::string>& c
   constexpr std::size_t kMaxWord = 64;
   std::string nearest;
   if (word.size() > kMaxWord) return nearest;
-  std::size_t best = (word.size() + 1) / 2;
+  if (word.empty()) return nearest;
+  std::size_t best = std::max<std::size_t>(2, (word.size() + 1) / 2);
   for (const std::string& candidate : candidates) {
     const std::size_t distance = CalcEditDistance(word, candidate);
     if (distance < best) {

@@ -15,7 +15,8 @@ std::string FormatDouble(double value);
 std::string OneLine(std::string_view text);
 
 /// The candidate that a typing error most likely meant: the nearest by edit distance (swaps count
-/// as one edit), if it is nearer than half the word's length; else "". Ties go to the first.
+/// as one edit), if it is nearer than half the word's length or one edit; else "". Ties go to the
+/// first.
 std::string FindNearest(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace pregrasp

@@ -12,7 +12,9 @@
 namespace pregrasp {
 namespace {
 
-constexpr double kMaxSize = 100.0;  // [m]; a larger number is a unit error
+constexpr double kMaxSize = 100.0;       // [m]; a larger number is a unit error
+constexpr double kMaxDistance = 1000.0;  // [m], from the world's origin
+constexpr double kMaxMass = 1e6;         // [kg]
 
 void RequirePositive(const std::string& where, const std::string& field, double value) {
   if (!(std::isfinite(value) && value > 0.0)) {
@@ -26,11 +28,17 @@ void RequireLength(const std::string& where, const std::string& field, double va
   }
 }
 
-void RequireFinite(const std::string& where, const std::string& field, const Vector3& v) {
+void RequirePoint(const std::string& where, const std::string& field, const Vector3& p) {
   for (int i = 0; i < 3; ++i) {
-    if (!std::isfinite(v[i])) {
-      throw InputError(where, field, "three finite numbers", FormatDouble(v[i]));
+    if (!(std::abs(p[i]) <= kMaxDistance)) {
+      throw InputError(where, field, "three numbers within 1000 m", FormatDouble(p[i]));
     }
+  }
+}
+
+void RequireFriction(const std::string& where, const std::string& field, double friction) {
+  if (!(std::isfinite(friction) && friction >= 0.0 && friction <= 10.0)) {
+    throw InputError(where, field, "a coefficient from 0 to 10", FormatDouble(friction));
   }
 }
 
@@ -58,7 +66,7 @@ struct ShapeValidator {
     if (whole.parts.empty()) throw InputError(where, field, "at least one part", "an empty union");
     for (std::size_t i = 0; i < whole.parts.size(); ++i) {
       const std::string part = fmt::format("{}[{}]", field, i + 1);
-      RequireFinite(where, part + ".p", whole.parts[i].X_BP.translation());
+      RequirePoint(where, part + ".p", whole.parts[i].X_BP.translation());
       std::visit(ShapeValidator{where, part}, whole.parts[i].shape);
     }
   }
@@ -72,25 +80,65 @@ void ValidateName(const std::string& where, const std::string& field, const std:
     throw InputError(where, field, "a name of letters, digits, _ and -", '"' + name + '"');
 }
 
+// An inertia that a rigid body can have: positive moments, none above the sum of the others. Zero
+// stands for "not given".
+void ValidateInertia(const Body& body, const std::string& field) {
+  const Matrix3& I = body.mass_properties->I_BBcm;
+  if (I.isZero(0.0)) return;
+  const std::string expected = "the inertia of a rigid body in kg m^2";
+  if (!I.allFinite()) throw InputError(body.where, field, expected, "a number that is not finite");
+  const Vector3 moments =
+      Eigen::SelfAdjointEigenSolver<Matrix3>(I, Eigen::EigenvaluesOnly).eigenvalues();
+  if (moments[0] <= 0.0 || moments[2] > (1.0 + 1e-9) * (moments[0] + moments[1])) {
+    throw InputError(body.where, field, expected,
+                     fmt::format("principal moments {}, {} and {}", FormatDouble(moments[0]),
+                                 FormatDouble(moments[1]), FormatDouble(moments[2])));
+  }
+}
+
 void ValidateMass(const Body& body, const std::string& field) {
-  const MassProperties& mass = *body.mass_properties;
-  RequirePositive(body.where, field + ".mass", mass.mass);
-  RequireFinite(body.where, field + ".com", mass.p_BoBcm);
+  const MassProperties& properties = *body.mass_properties;
+  if (!(properties.mass > 0.0 && properties.mass <= kMaxMass)) {
+    throw InputError(body.where, field + ".mass",
+                     properties.mass > 0.0 ? "a mass of at most 1e6 kg" : "a mass above 0 kg",
+                     FormatDouble(properties.mass));
+  }
+  RequirePoint(body.where, field + ".com", properties.p_BoBcm);
+  ValidateInertia(body, field + ".inertia");
 }
 
 void ValidateBody(const Body& body, const std::string& field) {
   ValidateName(body.where, field + ".name", body.name);
-  RequireFinite(body.where, field + ".p", body.X_WB.translation());
+  RequirePoint(body.where, field + ".p", body.X_WB.translation());
   if (!body.X_WB.linear().allFinite()) {
     throw InputError(body.where, field + ".rpy_deg", "three finite numbers", "nan");
   }
   const std::string shape_field = field + ".shape";
   std::visit(ShapeValidator{body.where, shape_field}, body.shape);
-  if (!(std::isfinite(body.friction) && body.friction >= 0.0 && body.friction <= 10.0)) {
-    throw InputError(body.where, field + ".friction", "a coefficient from 0 to 10",
-                     FormatDouble(body.friction));
-  }
+  RequireFriction(body.where, field + ".friction", body.friction);
   if (body.movable()) ValidateMass(body, field);
+}
+
+void ValidateFingertips(const std::string& where, const FingertipConfig& tips) {
+  RequireFriction(where, "fingertips.friction", tips.friction);
+  RequirePositive(where, "fingertips.max_force", tips.max_force);
+  RequirePositive(where, "fingertips.stiffness", tips.stiffness);
+  if (!(std::isfinite(tips.damping) && tips.damping >= 0.0)) {
+    throw InputError(where, "fingertips.damping", "a number of at least 0",
+                     FormatDouble(tips.damping));
+  }
+}
+
+void ValidateCamera(const std::string& where, const CameraConfig& camera) {
+  RequirePoint(where, "camera.p", camera.p_WCam);
+  RequirePoint(where, "camera.look_at", camera.p_WTarget);
+  if ((camera.p_WCam - camera.p_WTarget).norm() < 1e-6) {
+    throw InputError(where, "camera.look_at", "a point other than camera.p", "the same");
+  }
+  if (!(camera.fov_deg >= 1.0 && camera.fov_deg <= 150.0)) {
+    throw InputError(where, "camera.fov_deg", "an angle from 1 to 150 degrees",
+                     FormatDouble(camera.fov_deg));
+  }
 }
 
 }  // namespace
@@ -102,13 +150,14 @@ const char* ShapeKind(const Shape& shape) {
 }
 
 void ValidateScene(const Scene& scene) {
-  ValidateName(scene.file, "name", scene.name);
-  if (scene.bodies.empty()) throw InputError(scene.file, "object", "an object", "none");
+  const std::string& where = scene.where.empty() ? scene.file : scene.where;
+  ValidateName(where, "name", scene.name);
+  if (scene.bodies.empty()) throw InputError(where, "object", "an object", "none");
   if (!scene.object().movable()) {
     throw InputError(scene.object().where, "object.mass", "a mass above 0 kg", "none");
   }
   if (scene.bodies.size() < 2) {
-    throw InputError(scene.file, "environment", "at least one body", "none");
+    throw InputError(where, "environment", "at least one body", "none");
   }
   std::set<std::string> names;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -120,18 +169,14 @@ void ValidateScene(const Scene& scene) {
                        '"' + body.name + '"');
     }
   }
-  RequireFinite(scene.file, "gravity", scene.gravity);
-  const FingertipConfig& tips = scene.fingertips;
-  if (!(std::isfinite(tips.friction) && tips.friction >= 0.0 && tips.friction <= 10.0)) {
-    throw InputError(scene.file, "fingertips.friction", "a coefficient from 0 to 10",
-                     FormatDouble(tips.friction));
+  for (int i = 0; i < 3; ++i) {
+    if (!(std::abs(scene.gravity[i]) <= 100.0)) {
+      throw InputError(where, "gravity", "three numbers within 100 m/s^2",
+                       FormatDouble(scene.gravity[i]));
+    }
   }
-  RequirePositive(scene.file, "fingertips.max_force", tips.max_force);
-  RequirePositive(scene.file, "fingertips.stiffness", tips.stiffness);
-  if (!(std::isfinite(tips.damping) && tips.damping >= 0.0)) {
-    throw InputError(scene.file, "fingertips.damping", "a number of at least 0",
-                     FormatDouble(tips.damping));
-  }
+  ValidateFingertips(where, scene.fingertips);
+  if (scene.camera) ValidateCamera(where, *scene.camera);
 }
 
 std::vector<std::string> RuleDepartures(const Scene& scene) {

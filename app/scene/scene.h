@@ -58,7 +58,8 @@ struct Scene {
   FingertipConfig fingertips;
   Vector3 gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
   std::optional<CameraConfig> camera;
-  std::string file;  ///< the scene file, as given; empty for a scene built in a script
+  std::string file;   ///< the scene file, as given; empty for a scene built in a script
+  std::string where;  ///< file:line of the scene, for messages; may be empty
 
   const Body& object() const { return bodies.at(0); }
   Body& object() { return bodies.at(0); }
@@ -66,8 +67,8 @@ struct Scene {
 };
 
 /// Checks what can be checked without geometry: names (present, unique, [A-Za-z0-9_-]+), sizes,
-/// masses, friction, finite numbers, rotations, an object with mass, at least one body of
-/// environment.
+/// masses, inertias a rigid body can have, friction, finite numbers within reason, rotations, the
+/// camera, an object with mass, at least one body of environment.
 /// @throws InputError that names the first offending field and, where known, its file and line.
 void ValidateScene(const Scene& scene);
 

@@ -31,6 +31,7 @@ TEST(FindNearestTest, FindsTypingErrorsAndNothingFarFetched) {
   EXPECT_EQ(FindNearest("msas", keys), "mass");
   EXPECT_EQ(FindNearest("shapes", keys), "shape");
   EXPECT_EQ(FindNearest("weight", keys), "");
+  EXPECT_EQ(FindNearest("bx", {"box", "boxes"}), "box");
   EXPECT_EQ(FindNearest("", keys), "");
 }
 

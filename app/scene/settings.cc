@@ -1,0 +1,142 @@
+#include "app/scene/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <functional>
+#include <map>
+
+#include "app/core/error.h"
+#include "app/core/text.h"
+
+namespace pregrasp {
+namespace {
+
+constexpr const char* kWhere = "--set";
+
+double ParseNumber(const Setting& setting, std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw InputError(kWhere, setting.key, "a number", '"' + std::string(text) + '"');
+  }
+  return value;
+}
+
+// "x,y,z", with or without the braces of a scene file.
+Vector3 ParseVector(const Setting& setting) {
+  std::string_view text = setting.value;
+  if (text.size() >= 2 && text.front() == '{' && text.back() == '}') {
+    text = text.substr(1, text.size() - 2);
+  }
+  Vector3 v;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t comma = text.find(',');
+    if ((comma == std::string_view::npos) != (i == 2)) {
+      throw InputError(kWhere, setting.key, "three numbers x,y,z", '"' + setting.value + '"');
+    }
+    v[i] = ParseNumber(setting, text.substr(0, comma));
+    text.remove_prefix(i == 2 ? text.size() : comma + 1);
+  }
+  return v;
+}
+
+using Setter = std::function<void(const Setting&)>;
+using Setters = std::map<std::string, Setter>;
+
+Setter SetNumber(double& target) {
+  return [&target](const Setting& setting) { target = ParseNumber(setting, setting.value); };
+}
+
+Setter SetVector(Vector3& target) {
+  return [&target](const Setting& setting) { target = ParseVector(setting); };
+}
+
+Setter SetText(std::string& target) {
+  return [&target](const Setting& setting) { target = setting.value; };
+}
+
+void AddBody(Setters& setters, const std::string& prefix, Body& body) {
+  setters[prefix + ".name"] = SetText(body.name);
+  setters[prefix + ".friction"] = SetNumber(body.friction);
+  setters[prefix + ".p"] = [&body](const Setting& setting) {
+    body.X_WB.translation() = ParseVector(setting);
+  };
+  setters[prefix + ".rpy_deg"] = [&body](const Setting& setting) {
+    body.X_WB.linear() = RotationFromRpy(ParseVector(setting) * (kPi / 180.0));
+  };
+  setters[prefix + ".mass"] = [&body](const Setting& setting) {
+    const double mass = ParseNumber(setting, setting.value);
+    if (!body.mass_properties) body.mass_properties.emplace();
+    MassProperties& properties = *body.mass_properties;
+    // An inertia that the scene gave follows the mass: the same body, denser.
+    if (properties.mass > 0.0) properties.I_BBcm *= mass / properties.mass;
+    properties.mass = mass;
+  };
+}
+
+Setters SettersOf(Scene& scene) {
+  Setters setters;
+  setters["name"] = SetText(scene.name);
+  setters["gravity"] = SetVector(scene.gravity);
+  AddBody(setters, "object", scene.object());
+  for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
+    AddBody(setters, "environment." + scene.bodies[i].name, scene.bodies[i]);
+  }
+  setters["fingertips.friction"] = SetNumber(scene.fingertips.friction);
+  setters["fingertips.max_force"] = SetNumber(scene.fingertips.max_force);
+  setters["fingertips.stiffness"] = SetNumber(scene.fingertips.stiffness);
+  setters["fingertips.damping"] = SetNumber(scene.fingertips.damping);
+  if (scene.camera) {
+    setters["camera.p"] = SetVector(scene.camera->p_WCam);
+    setters["camera.look_at"] = SetVector(scene.camera->p_WTarget);
+    setters["camera.fov_deg"] = SetNumber(scene.camera->fov_deg);
+  }
+  return setters;
+}
+
+std::string RootOf(const std::string& key) { return key.substr(0, key.find('.')); }
+
+}  // namespace
+
+Setting ParseSetting(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size()) {
+    throw InputError(kWhere, "", "key=value, as in fingertips.friction=0.5",
+                     '"' + assignment + '"');
+  }
+  return {assignment.substr(0, equals), assignment.substr(equals + 1)};
+}
+
+void ApplySceneSettings(Scene& scene, std::vector<Setting>& settings) {
+  const Setters setters = SettersOf(scene);
+  std::vector<std::string> legal, roots;
+  for (const auto& [key, setter] : setters) {
+    legal.push_back(key);
+    roots.push_back(RootOf(key));
+  }
+  std::vector<Setting> left;
+  for (const Setting& setting : settings) {
+    if (const auto setter = setters.find(setting.key); setter != setters.end()) {
+      setter->second(setting);
+    } else if (std::find(roots.begin(), roots.end(), RootOf(setting.key)) == roots.end()) {
+      left.push_back(setting);
+    } else {
+      RequireNoSettingsLeft({setting}, legal);
+    }
+  }
+  settings = std::move(left);
+}
+
+void RequireNoSettingsLeft(const std::vector<Setting>& settings,
+                           const std::vector<std::string>& known) {
+  if (settings.empty()) return;
+  const std::string& key = settings.front().key;
+  const std::string nearest = FindNearest(key, known);
+  throw InputError(
+      kWhere, "", "a key that can be set",
+      fmt::format("\"{}\"{}", key, nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+}
+
+}  // namespace pregrasp
