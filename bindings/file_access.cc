@@ -1,0 +1,91 @@
+#include "bindings/file_access.h"
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+#include "app/core/error.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsBelow(const fs::path& path, const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path real_path = fs::weakly_canonical(fs::absolute(path), ignored);
+  const fs::path real_folder = fs::weakly_canonical(fs::absolute(folder), ignored);
+  const auto [rest, end] =
+      std::mismatch(real_folder.begin(), real_folder.end(), real_path.begin(), real_path.end());
+  return rest == real_folder.end() || (rest->empty() && std::next(rest) == real_folder.end());
+}
+
+void RequirePlainFile(const fs::path& file, const std::string& name) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw InputError(name, "", "a file", "nothing of that name");
+  if (fs::is_directory(status)) throw InputError(name, "", "a file", "a folder");
+  if (!fs::is_regular_file(status)) throw InputError(name, "", "a plain file", "a device or pipe");
+}
+
+}  // namespace
+
+FileAccess::FileAccess() { AllowReadsBelow("."); }
+
+void FileAccess::AllowReadsBelow(const fs::path& folder) {
+  readable_.push_back(folder.empty() ? fs::path(".") : folder);
+}
+
+fs::path FileAccess::FindForReading(const std::string& name) const {
+  fs::path found = name;
+  if (found.is_relative()) {
+    for (const fs::path& folder : readable_) {
+      const fs::path candidate = folder == "." ? fs::path(name) : folder / name;
+      std::error_code ignored;
+      if (fs::exists(candidate, ignored)) {
+        found = candidate;
+        break;
+      }
+    }
+  }
+  RequirePlainFile(found, name);
+  if (std::none_of(readable_.begin(), readable_.end(),
+                   [&](const fs::path& folder) { return IsBelow(found, folder); })) {
+    throw InputError(name, "", "a file in the working directory, the script's folder or the assets",
+                     "one elsewhere");
+  }
+  return found;
+}
+
+fs::path FileAccess::ResolveForWriting(const std::string& name) const {
+  const fs::path path = name;
+  const fs::path normal = path.lexically_normal();  // so that out/../.. is not taken for ours
+  fs::path resolved = path;
+  if (normal.is_relative() && normal.begin() != normal.end() && *normal.begin() == "out") {
+    resolved = (output_ / normal.lexically_relative("out")).lexically_normal();
+  }
+  if (!IsBelow(resolved, output_)) {
+    throw InputError(name, "", "a path in the output folder (\"out/..\")", "one elsewhere");
+  }
+  return resolved;
+}
+
+std::string ReadPlainFile(const fs::path& name, std::size_t max_bytes) {
+  RequirePlainFile(name, name.string());
+  std::ifstream in(name, std::ios::binary);
+  if (!in) throw InputError(name.string(), "", "a file that can be read", "one that cannot");
+  std::error_code error;
+  const auto size = fs::file_size(name, error);
+  if (error || size > max_bytes) {
+    throw InputError(name.string(), "", "a file of at most " + std::to_string(max_bytes) + " bytes",
+                     std::to_string(size));
+  }
+  std::string bytes(size, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (in.gcount() != static_cast<std::streamsize>(size)) {
+    throw InputError(name.string(), "", "a file that can be read", "a read error");
+  }
+  return bytes;
+}
+
+}  // namespace pregrasp

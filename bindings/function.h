@@ -1,0 +1,159 @@
+#pragma once
+
+#include <lua5.4/lua.hpp>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "bindings/protect.h"
+#include "bindings/schema.h"
+#include "bindings/value.h"
+
+namespace pregrasp {
+
+/// Specialised for each C++ class that Lua holds: `static const ClassInfo& info()`.
+template <typename T>
+struct LuaClass;
+
+/// Pushes an object that Lua shares with us; it is let go when Lua collects it.
+template <typename T>
+void PushObject(lua_State* L, std::shared_ptr<T> object) {
+  using Holder = std::shared_ptr<T>;
+  void* memory = lua_newuserdatauv(L, sizeof(Holder), 0);
+  new (memory) Holder(std::move(object));
+  PushClassMetatable(L, LuaClass<T>::info(), [](lua_State* state) {
+    static_cast<Holder*>(lua_touserdata(state, 1))->~Holder();
+    return 0;
+  });
+  lua_setmetatable(L, -2);
+}
+
+/// The object at `index`, or null when it is something else.
+template <typename T>
+std::shared_ptr<T> FindObject(lua_State* L, int index) {
+  auto* holder = static_cast<std::shared_ptr<T>*>(TestClass(L, index, LuaClass<T>::info()));
+  return holder == nullptr ? nullptr : *holder;
+}
+
+template <typename T>
+struct LuaValue<std::shared_ptr<T>> {
+  static std::shared_ptr<T> Read(lua_State* L, int index, const std::string& path) {
+    std::shared_ptr<T> object = FindObject<T>(L, index);
+    if (!object)
+      throw InputError("", path, "a " + LuaClass<T>::info().name, DescribeValue(L, index));
+    return object;
+  }
+  static void Push(lua_State* L, std::shared_ptr<T> object) { PushObject(L, std::move(object)); }
+};
+
+/// What a bound function returns that pushed its results itself.
+struct Pushed {
+  int count = 0;
+};
+
+namespace internal {
+
+/// The name of parameter `number`, 1-based, of "a, b, c".
+std::string ParameterName(const FunctionInfo& function, int number);
+[[noreturn]] void ThrowTooMany(const FunctionInfo& function, int got);
+
+/// Reads one C++ parameter, moving `index` past what it took.
+template <typename T>
+struct Parameter {
+  using Stored = std::decay_t<T>;
+  static Stored Read(lua_State* L, int& index, const FunctionInfo& function, int first) {
+    const std::string path = ParameterName(function, index - first + 1);
+    return LuaValue<Stored>::Read(L, index++, path);
+  }
+  static Stored& Pass(Stored& stored) { return stored; }
+};
+
+/// A class by reference: the object of a method call.
+template <typename T>
+requires requires { LuaClass<std::remove_const_t<T>>::info(); }
+struct Parameter<T&> {
+  using Stored = std::shared_ptr<std::remove_const_t<T>>;
+  static Stored Read(lua_State* L, int& index, const FunctionInfo& function, int first) {
+    Stored object = FindObject<std::remove_const_t<T>>(L, index);
+    if (!object) {
+      const std::string name = LuaClass<std::remove_const_t<T>>::info().name;
+      const bool self = index < first;
+      throw InputError("", self ? "" : ParameterName(function, index - first + 1),
+                       "a " + name + (self ? " before a colon (x:" + function.name + ")" : ""),
+                       DescribeValue(L, index));
+    }
+    ++index;
+    return object;
+  }
+  static T& Pass(Stored& stored) { return *stored; }
+};
+
+template <>
+struct Parameter<lua_State*> {
+  using Stored = lua_State*;
+  static Stored Read(lua_State* L, int& /*index*/, const FunctionInfo& /*function*/,
+                     int /*first*/) {
+    return L;
+  }
+  static Stored Pass(Stored stored) { return stored; }
+};
+
+template <typename R, typename... Args>
+int Invoke(lua_State* L, const FunctionInfo& function, bool method, R (*target)(Args...)) {
+  int index = 1;
+  const int first = method ? 2 : 1;  // the object is not counted
+  std::tuple<typename Parameter<Args>::Stored...> stored{
+      Parameter<Args>::Read(L, index, function, first)...};
+  if (lua_gettop(L) >= index) ThrowTooMany(function, lua_gettop(L) - first + 1);
+  const auto call = [&](auto&... values) -> R { return target(Parameter<Args>::Pass(values)...); };
+  if constexpr (std::is_void_v<R>) {
+    std::apply(call, stored);
+    return 0;
+  } else if constexpr (std::is_same_v<R, Pushed>) {
+    return std::apply(call, stored).count;
+  } else {
+    LuaValue<std::decay_t<R>>::Push(L, std::apply(call, stored));
+    return 1;
+  }
+}
+
+template <auto kTarget, bool kMethod, bool kPaused>
+int Thunk(lua_State* L) {
+  return Protect(L, [L]() -> int {
+    const auto& function =
+        *static_cast<const FunctionInfo*>(lua_touserdata(L, lua_upvalueindex(1)));
+    std::conditional_t<kPaused, Machine::Pause, lua_State*> pause(L);
+    static_cast<void>(pause);
+    try {
+      return Invoke(L, function, kMethod, kTarget);
+    } catch (const InputError& error) {
+      // Say which call it was, unless the line of the script is said already.
+      if (InSameFile(error.what(), WhereInLua(L))) throw;
+      throw InputError(function.name + ": " + error.what());
+    }
+  });
+}
+
+}  // namespace internal
+
+/// A free function of a module. Time within it is not the script's.
+template <auto kTarget>
+FunctionInfo Function(std::string name, std::string parameters = "") {
+  return {std::move(name), std::move(parameters), internal::Thunk<kTarget, false, true>};
+}
+
+/// A method: the target's first parameter is the object, by reference.
+template <auto kTarget>
+FunctionInfo Method(std::string name, std::string parameters = "") {
+  return {std::move(name), std::move(parameters), internal::Thunk<kTarget, true, true>};
+}
+
+/// A value that can be read: the target takes the object only, and is quick.
+template <auto kTarget>
+FunctionInfo Property(std::string name) {
+  return {std::move(name), "", internal::Thunk<kTarget, true, false>};
+}
+
+}  // namespace pregrasp

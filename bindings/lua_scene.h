@@ -1,0 +1,40 @@
+#pragma once
+
+#include <lua5.4/lua.hpp>
+#include <string>
+#include <vector>
+
+#include "app/scene/scene.h"
+#include "bindings/value.h"
+
+namespace pregrasp {
+
+/// A shape as the constructors give it: a value that cannot be changed, with the line that made it.
+struct LuaShape {
+  Shape shape;
+  std::string where;
+  int parts = 1;  ///< of a union, all levels
+  int depth = 1;
+};
+
+/// scene, box, cylinder, capsule, sphere, mesh, cloud and union, for a module or as globals.
+const std::vector<FunctionInfo>& SceneConstructors();
+
+/// The tables that the constructors take, for lua/meta.
+std::vector<const Schema*> SceneSchemas();
+std::vector<const ClassInfo*> SceneClasses();
+
+/// Whether the value is what scene{..} gave.
+bool IsScene(lua_State* L, int index);
+
+/// What scene{..} gave, or the plain table that it takes, as a scene; not validated.
+/// @throws InputError with the file:line of the shape that the field belongs to.
+Scene ReadScene(lua_State* L, int index);
+
+/// The table {p = .., look_at = .., fov_deg = ..} under `key` of another.
+CameraConfig ReadCamera(lua_State* L, const Fields& owner, const std::string& key);
+
+/// From now on the constructor `scene` of this state may be called once.
+void AllowOneScene(lua_State* L);
+
+}  // namespace pregrasp

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <lua5.4/lua.hpp>
+#include <map>
+#include <string>
+
+#include "bindings/file_access.h"
+
+namespace pregrasp {
+
+struct MachineConfig {
+  double seconds = 20.0;              ///< Lua time of this thread's CPU, our own calls not counted
+  std::size_t bytes = 512ULL << 20U;  ///< cap on what Lua itself allocates
+  std::uint64_t seed = 1;             ///< of math.random
+  /// What raises the time limit, for the message; empty when nothing does.
+  std::string time_flag = "--time";
+
+  void Validate() const;
+};
+
+/// One Lua world: a state with the sandboxed libraries, a memory cap, a time cap that no pcall and
+/// no coroutine can swallow, and a fresh environment for each chunk. What the sandbox closes is
+/// listed in bindings/README.md, each with its test.
+class Machine {
+ public:
+  static constexpr std::size_t kMaxString = 16U << 20U;  ///< [bytes], of one string
+  static constexpr std::size_t kMaxSource = 16U << 20U;  ///< [bytes], of one Lua file
+
+  explicit Machine(const MachineConfig& config);
+  ~Machine();
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+
+  lua_State* state() const { return L_; }
+  const MachineConfig& config() const { return config_; }
+  FileAccess& files() { return files_; }
+  static Machine& Of(lua_State* L);
+
+  /// Loads a text chunk in a fresh environment and leaves it as a function on the stack of L. The
+  /// first file's folder becomes readable, and modules are looked for there.
+  /// @throws InputError naming `file`: unreadable, not text, a syntax error.
+  void LoadFile(lua_State* L, const std::filesystem::path& file);
+  const std::filesystem::path& script_folder() const { return script_folder_; }
+
+  /// Calls the function that lies below its `arguments` on the stack of state().
+  /// @throws InputError with one line that has file:line where there is one; Interrupted;
+  /// InternalError.
+  void Call(int arguments, int results);
+
+  /// Raises the Lua error that ends the script if it is out of time or was interrupted.
+  void CheckTime(lua_State* L);
+
+  /// Ends the script: the error is raised again at every further instruction, whatever catches it.
+  enum class StopReason { kNone, kTime, kInterrupt, kInternal };
+  void Stop(lua_State* L, StopReason reason, const std::string& message);
+  void RaiseIfStopped(lua_State* L);
+  bool stopped() const { return stop_reason_ != StopReason::kNone; }
+
+  /// The words for a script that ran into the memory cap.
+  std::string MemoryMessage() const;
+
+  /// While alive, time is not counted: our own calls may take as long as they need.
+  class Pause {
+   public:
+    explicit Pause(lua_State* L);
+    ~Pause();
+    Pause(const Pause&) = delete;
+    Pause& operator=(const Pause&) = delete;
+
+   private:
+    Machine& machine_;
+  };
+
+ private:
+  static void* Allocate(void* self, void* block, std::size_t old_size, std::size_t new_size);
+  static void OnHook(lua_State* L, lua_Debug* activation);
+  static int HandleMessage(lua_State* L);
+  double LuaSeconds() const;
+  std::string TimeMessage() const;
+  std::string WithFullNames(std::string message) const;
+  [[noreturn]] void ThrowLuaError(int status);
+
+  MachineConfig config_;
+  FileAccess files_;
+  lua_State* L_ = nullptr;
+  std::size_t used_ = 0;
+  bool running_ = false;
+  StopReason stop_reason_ = StopReason::kNone;
+  std::string stop_message_;
+  double start_ = 0.0, paused_since_ = 0.0, paused_ = 0.0;  // [s] of the thread's CPU
+  int pauses_ = 0;
+  std::filesystem::path script_folder_;
+  std::string first_file_;
+  std::string memory_where_;                       // of the last allocation that was refused
+  std::map<std::string, std::string> full_names_;  // from the name that Lua shortened
+};
+
+/// "file:line" of the innermost Lua function that is running, or "".
+std::string WhereInLua(lua_State* L);
+
+}  // namespace pregrasp

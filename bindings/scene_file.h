@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/scene/scene.h"
+#include "app/scene/settings.h"
+
+namespace pregrasp {
+
+/// The folder that holds scenes/, lua/ and assets/: the source tree that the program was built
+/// from.
+std::filesystem::path DataFolder();
+
+/// Runs a scene file in a Lua world of its own (2 s, 64 MB) and returns its scene: settings
+/// applied, validated, shapes loaded. Settings that are not the scene's stay in the list.
+/// @throws InputError with file:line where there is one.
+Scene LoadSceneFile(const std::filesystem::path& file, std::vector<Setting>& settings);
+
+/// The last steps of that, also for a scene built in a script: finds the files that its shapes name
+/// (the scene's folder first, then the working directory and the assets), validates and loads.
+void FinishScene(Scene& scene, const std::filesystem::path& folder, std::vector<Setting>& settings);
+
+}  // namespace pregrasp

@@ -1,0 +1,152 @@
+#include "bindings/schema.h"
+
+#include <algorithm>
+
+#include "app/core/text.h"
+#include "bindings/protect.h"
+#include "bindings/value.h"
+
+namespace pregrasp {
+namespace {
+
+std::vector<std::string> MemberNames(const ClassInfo& info) {
+  std::vector<std::string> names;
+  for (const FunctionInfo& method : info.methods) names.push_back(method.name);
+  for (const FunctionInfo& property : info.properties) names.push_back(property.name);
+  return names;
+}
+
+// Upvalue 1: the schema. Reached only when the table lacks the key.
+int ReadMissingField(lua_State* L) {
+  return Protect(L, [L]() -> int {
+    const auto& schema = *static_cast<const Schema*>(lua_touserdata(L, lua_upvalueindex(1)));
+    const std::string key = KeyText(L, 2);
+    if (!schema.Has(key)) throw InputError(UnknownKeyMessage(schema.name, key, schema.keys));
+    lua_pushnil(L);
+    return 1;
+  });
+}
+
+int RefuseNewField(lua_State* L) {
+  return Protect(L, [L]() -> int {
+    const auto& schema = *static_cast<const Schema*>(lua_touserdata(L, lua_upvalueindex(1)));
+    throw InputError(UnknownKeyMessage(schema.name, KeyText(L, 2), schema.keys));
+  });
+}
+
+// Upvalues: methods by name, properties by name, the class.
+int ReadMember(lua_State* L) {
+  lua_pushvalue(L, 2);
+  if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) return 1;
+  lua_pushvalue(L, 2);
+  if (lua_rawget(L, lua_upvalueindex(2)) != LUA_TNIL) {
+    lua_pushvalue(L, 1);
+    lua_call(L, 1, 1);
+    return 1;
+  }
+  return Protect(L, [L]() -> int {
+    const auto& info = *static_cast<const ClassInfo*>(lua_touserdata(L, lua_upvalueindex(3)));
+    throw InputError(UnknownKeyMessage(info.name, KeyText(L, 2), MemberNames(info)));
+  });
+}
+
+int RefuseMember(lua_State* L) {
+  return Protect(L, [L]() -> int {
+    const auto& info = *static_cast<const ClassInfo*>(lua_touserdata(L, lua_upvalueindex(1)));
+    const std::string key = KeyText(L, 2);
+    const std::vector<std::string> names = MemberNames(info);
+    if (std::find(names.begin(), names.end(), key) == names.end()) {
+      throw InputError(UnknownKeyMessage(info.name, key, names));
+    }
+    throw InputError(info.name + ": \"" + key + "\" can only be read");
+  });
+}
+
+void PushFunctions(lua_State* L, const std::vector<FunctionInfo>& functions) {
+  lua_createtable(L, 0, static_cast<int>(functions.size()));
+  for (const FunctionInfo& function : functions) {
+    PushFunction(L, function);
+    lua_setfield(L, -2, function.name.c_str());
+  }
+}
+
+void* Identity(const void* object) { return const_cast<void*>(object); }
+
+}  // namespace
+
+bool Schema::Has(const std::string& key) const {
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+std::string UnknownKeyMessage(const std::string& what, const std::string& key,
+                              const std::vector<std::string>& legal) {
+  std::string message = what.empty() ? "" : what + ": ";
+  message += "unknown key \"" + key + "\"";
+  const std::string nearest = FindNearest(key, legal);
+  if (!nearest.empty()) return message + " (did you mean \"" + nearest + "\"?)";
+  std::string all;
+  for (const std::string& name : legal) all += (all.empty() ? "" : ", ") + name;
+  return message + " (the keys are " + all + ")";
+}
+
+void PushRecordTable(lua_State* L, const Schema& schema) {
+  lua_createtable(L, 0, static_cast<int>(schema.keys.size()));
+  if (lua_rawgetp(L, LUA_REGISTRYINDEX, &schema) == LUA_TNIL) {
+    lua_pop(L, 1);
+    lua_createtable(L, 0, 4);
+    lua_pushlightuserdata(L, Identity(&schema));
+    lua_pushcclosure(L, ReadMissingField, 1);
+    lua_setfield(L, -2, "__index");
+    lua_pushlightuserdata(L, Identity(&schema));
+    lua_pushcclosure(L, RefuseNewField, 1);
+    lua_setfield(L, -2, "__newindex");
+    lua_pushstring(L, schema.name.c_str());
+    lua_setfield(L, -2, "__name");
+    lua_pushboolean(L, 0);
+    lua_setfield(L, -2, "__metatable");
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &schema);
+  }
+  lua_setmetatable(L, -2);
+}
+
+void PushFunction(lua_State* L, const FunctionInfo& function) {
+  lua_pushlightuserdata(L, Identity(&function));
+  lua_pushcclosure(L, function.call, 1);
+}
+
+void PushClassMetatable(lua_State* L, const ClassInfo& info, lua_CFunction destroy) {
+  if (lua_rawgetp(L, LUA_REGISTRYINDEX, &info) != LUA_TNIL) return;
+  lua_pop(L, 1);
+  lua_createtable(L, 0, 6);
+  PushFunctions(L, info.methods);
+  PushFunctions(L, info.properties);
+  lua_pushlightuserdata(L, Identity(&info));
+  lua_pushcclosure(L, ReadMember, 3);
+  lua_setfield(L, -2, "__index");
+  lua_pushlightuserdata(L, Identity(&info));
+  lua_pushcclosure(L, RefuseMember, 1);
+  lua_setfield(L, -2, "__newindex");
+  lua_pushstring(L, info.name.c_str());
+  lua_setfield(L, -2, "__name");
+  lua_pushboolean(L, 0);
+  lua_setfield(L, -2, "__metatable");
+  lua_pushcfunction(L, destroy);
+  lua_setfield(L, -2, "__gc");
+  if (info.to_string != nullptr) {
+    lua_pushcfunction(L, info.to_string);
+    lua_setfield(L, -2, "__tostring");
+  }
+  lua_pushvalue(L, -1);
+  lua_rawsetp(L, LUA_REGISTRYINDEX, &info);
+}
+
+void* TestClass(lua_State* L, int index, const ClassInfo& info) {
+  if (lua_type(L, index) != LUA_TUSERDATA || !lua_getmetatable(L, index)) return nullptr;
+  lua_rawgetp(L, LUA_REGISTRYINDEX, &info);
+  const bool same = lua_rawequal(L, -1, -2) != 0;
+  lua_pop(L, 2);
+  return same ? lua_touserdata(L, index) : nullptr;
+}
+
+}  // namespace pregrasp
