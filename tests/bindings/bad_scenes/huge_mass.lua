@@ -1,0 +1,6 @@
+-- expect: huge_mass.lua:4: object.mass: expected a mass of at most 1e6 kg, got 1e+30
+return scene {
+  name = "bad",
+  object = { shape = box{0.1, 0.1, 0.1}, mass = 1e30 },
+  environment = { { name = "table", shape = box{0.8, 0.6, 0.04}, p = {0, 0, -0.02} } },
+}

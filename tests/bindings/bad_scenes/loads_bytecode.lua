@@ -1,0 +1,2 @@
+-- expect: loads_bytecode.lua:2: attempt to load a binary chunk
+assert(load("\27Lua"))

@@ -1,0 +1,6 @@
+-- expect: nan_size.lua:4: box: [2]: expected a finite number, got
+return scene {
+  name = "bad",
+  object = { shape = box{0.1, 0 / 0, 0.1}, mass = 0.2 },
+  environment = { { name = "table", shape = box{0.8, 0.6, 0.04}, p = {0, 0, -0.02} } },
+}

@@ -1,0 +1,5 @@
+-- expect: no_environment.lua:2: scene: environment: expected a list of bodies, got nothing
+return scene {
+  name = "bad",
+  object = { shape = box{0.1, 0.1, 0.1}, mass = 0.2, p = {0, 0, 0.05} },
+}

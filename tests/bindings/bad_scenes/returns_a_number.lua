@@ -1,0 +1,2 @@
+-- expect: returns_a_number.lua: expected "return scene { .. }" at its end, got 42
+return 42

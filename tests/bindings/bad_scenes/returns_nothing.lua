@@ -1,0 +1,2 @@
+-- expect: returns_nothing.lua: expected "return scene { .. }" at its end, got nothing
+local x = 1

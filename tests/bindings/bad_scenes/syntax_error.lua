@@ -1,0 +1,4 @@
+-- expect: syntax_error.lua:3: 
+return scene {
+  name = = "bad",
+}
