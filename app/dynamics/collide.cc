@@ -3,8 +3,10 @@
 namespace pregrasp {
 
 using internal::CollideBoxes;
+using internal::CollideConvex;
 using internal::CollideWithBoxFace;
 using internal::FaceOutcome;
+using internal::kFaceOfB;
 
 bool Collide(const PlacedConvex& a, const PlacedConvex& b, double margin, Manifold* manifold) {
   manifold->Clear();
@@ -18,12 +20,15 @@ bool Collide(const PlacedConvex& a, const PlacedConvex& b, double margin, Manifo
     if (outcome == FaceOutcome::kTouching) {
       if (!a_first) {
         manifold->nhat_W = -manifold->nhat_W;
-        for (int i = 0; i < manifold->size; ++i) manifold->points[i].feature |= 128U;
+        for (int i = 0; i < manifold->size; ++i) manifold->points[i].feature |= kFaceOfB;
       }
       return true;
     }
   }
-  return CollideBoxes(a, b, margin, manifold);
+  if (a.convex->kind == ConvexKind::kBox && b.convex->kind == ConvexKind::kBox) {
+    return CollideBoxes(a, b, margin, manifold);
+  }
+  return CollideConvex(a, b, margin, manifold);
 }
 
 }  // namespace pregrasp

@@ -22,6 +22,28 @@ inline constexpr double kFaceBias = 2e-5;
 /// that slides over the seam of two boards must not hit the second board's end.
 inline constexpr double kMinOverlap = 1e-5;
 
+/// Whether shapes with this separation along a face [m] slide along it rather than fly past. A
+/// shape that slides beside a face has no contact with it, however near the corners are: an object
+/// must cross the seam of two boards freely. One that flies at a corner must stop at it; it is
+/// flying if it is farther away than sliding bodies come from in a step.
+inline constexpr bool IsGrazing(double separation) {
+  return separation >= -kMinOverlap && separation <= 1e-4;
+}
+inline constexpr double kSlideReach = 2e-3;
+
+/// Whether no point of a face's contact is as near as the shapes are along its normal: the nearest
+/// parts of shapes that fly at each other lie beside the face, and the face says little about them.
+inline bool IsBesideFace(const Manifold& manifold, double separation) {
+  if (separation <= 1e-4) return false;
+  for (int i = 0; i < manifold.size; ++i) {
+    if (manifold.points[i].phi <= separation + 1e-4) return false;
+  }
+  return true;
+}
+
+/// Set in the feature of a point whose face belongs to B, so that it is not taken for one of A's.
+inline constexpr std::uint32_t kFaceOfB = 1U << 18;
+
 enum class FaceOutcome { kNotApplicable, kApart, kTouching };
 
 /// Contact of `q` with one face of box `a` when q's bounds lie within that face's outline, so that
@@ -32,6 +54,15 @@ FaceOutcome CollideWithBoxFace(const PlacedConvex& a, const PlacedConvex& q, dou
 /// Separating-axis test over faces and edge pairs, then clipping (Gottschalk et al. 1996;
 /// Gregorius, "The separating axis test between convex polyhedra", GDC 2013).
 bool CollideBoxes(const PlacedConvex& a, const PlacedConvex& b, double margin, Manifold* manifold);
+
+/// Contact of two shapes whose faces do not lie over each other: where they are nearest, if that is
+/// farther than `min_distance`.
+bool CollideNearestPoints(const PlacedConvex& a, const PlacedConvex& b, double margin,
+                          double min_distance, Manifold* manifold);
+
+/// Any pair: faces and ends first, then round sides, then the nearest points, and the overlap of
+/// the features that face each other along the direction found.
+bool CollideConvex(const PlacedConvex& a, const PlacedConvex& b, double margin, Manifold* manifold);
 
 }  // namespace internal
 }  // namespace pregrasp

@@ -71,8 +71,15 @@ class BoxPair {
       const FaceResult result =
           axis < 3 ? AddFaceContact(axis, a_, b_, R_, t_, false, manifold)
                    : AddFaceContact(axis - 3, b_, a_, R_.transpose(), -t_B_, true, manifold);
-      if (result != FaceResult::kSliver) return result == FaceResult::kTouching;
-      face_[axis] = kRejected;
+      if (result == FaceResult::kSliver) {
+        face_[axis] = kRejected;
+        continue;
+      }
+      const bool found = result == FaceResult::kTouching;
+      if ((found && !IsBesideFace(*manifold, separation)) || attempt > 0) return found;
+      const bool grazes = std::any_of(face_.begin(), face_.end(), IsGrazing);
+      if (found && grazes) return true;
+      return CollideNearestPoints(a_, b_, margin_, grazes ? kSlideReach : kRejected, manifold);
     }
     return false;
   }
@@ -199,6 +206,7 @@ class BoxPair {
       ClipSide<1>(1.0, half[iy], 2, polygon, &other);
       ClipSide<1>(-1.0, half[iy], 3, other, &polygon);
     }
+    if (polygon.size == 0) return FaceResult::kApart;
     if (IsSliver(polygon, half[ix], half[iy])) return FaceResult::kSliver;
 
     manifold->nhat_W = (flip ? -s : s) * ref.R_WP.col(i);
@@ -215,7 +223,7 @@ class BoxPair {
       p_ref[i] = s * (half[i] + 0.5 * point.height);
       points[count++] = {
           ref.p_WP + ref.R_WP * p_ref, point.height,
-          (is_corner ? corner[point.edge] : 32U + 8U * in + point.edge) | (flip ? 128U : 0U)};
+          (is_corner ? corner[point.edge] : 32U + 8U * in + point.edge) | (flip ? kFaceOfB : 0U)};
     }
     if (count == 0) return FaceResult::kApart;
     ReduceToFour(points.data(), count, manifold);
@@ -223,7 +231,6 @@ class BoxPair {
   }
 
   static bool IsSliver(const ClipPolygon& polygon, double half_x, double half_y) {
-    if (polygon.size == 0) return true;
     double min_x = polygon.points[0].x, max_x = min_x;
     double min_y = polygon.points[0].y, max_y = min_y;
     for (int i = 1; i < polygon.size; ++i) {

@@ -1,6 +1,8 @@
+#include <array>
 #include <cmath>
 
 #include "app/dynamics/collide.h"
+#include "app/dynamics/support.h"
 
 namespace pregrasp::internal {
 namespace {
@@ -44,6 +46,65 @@ void AddBoxCorners(const FacePlane& plane, Manifold* manifold) {
   plane.Add(center + du - dv, base | bit_u, manifold);
 }
 
+// A cylinder against the plane: its lower end's rim, or the line of its side nearest to the plane.
+void AddCylinderPoints(const FacePlane& plane, Manifold* manifold) {
+  constexpr double kEndCosine = 0.5;
+  constexpr double kFlat = 3e-5;  // [rad]; lying flatter, it touches with four fixed points
+  const Convex& q = *plane.q.convex;
+  const Vector3 axis = plane.R_AQ.col(2);
+  const Vector3 nhat = plane.s * Vector3::Unit(plane.i);
+  const double c = axis.dot(nhat);
+  const Vector3 down = c * axis - nhat;  // towards the plane, at right angles to the axis
+  const double sine = down.norm();
+  if (std::abs(c) < kEndCosine) {
+    const Vector3 radial = down * (q.radius / sine);
+    plane.Add(plane.p_AQ - q.half_height * axis + radial, 4, manifold);
+    plane.Add(plane.p_AQ + q.half_height * axis + radial, 5, manifold);
+    return;
+  }
+  const Vector3 center = plane.p_AQ - std::copysign(q.half_height, c) * axis;
+  const Vector3 u = (sine > kFlat ? Vector3(down / sine) : Vector3(plane.R_AQ.col(0))) * q.radius;
+  const Vector3 w = axis.cross(u);
+  plane.Add(center + u, 0, manifold);
+  plane.Add(center + w, 1, manifold);
+  plane.Add(center - u, 2, manifold);
+  plane.Add(center - w, 3, manifold);
+}
+
+void AddCapsulePoints(const FacePlane& plane, Manifold* manifold) {
+  const Convex& q = *plane.q.convex;
+  const Vector3 axis = q.half_height * plane.R_AQ.col(2);
+  Vector3 p = plane.p_AQ;
+  p[plane.i] -= plane.s * q.radius;
+  plane.Add(p - axis, 0, manifold);
+  if (q.half_height > 0.0) plane.Add(p + axis, 1, manifold);
+}
+
+// All vertices near the plane, the lowest first so that a crowd cannot push it out.
+void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
+  constexpr int kMaxVertices = 64;
+  const Polytope& polytope = *plane.q.convex->polytope;
+  const Vector3 n = plane.s * plane.R_AQ.row(plane.i);
+  const double base = plane.s * plane.p_AQ[plane.i] - plane.a.convex->half[plane.i];
+  const int lowest = FindSupportVertex(polytope, -n);
+  const double limit = plane.margin - base;
+  std::array<ManifoldPoint, kMaxVertices> points;
+  int count = 0;
+  const auto add = [&](int i) {
+    const double height = n.dot(polytope.vertices[i]);
+    if (height > limit || count == kMaxVertices) return;
+    Vector3 p_A = plane.p_AQ + plane.R_AQ * polytope.vertices[i];
+    p_A[plane.i] -= 0.5 * plane.s * (base + height);
+    points[count++] = {plane.a.p_WP + plane.a.R_WP * p_A, base + height,
+                       static_cast<std::uint32_t>(i)};
+  };
+  add(lowest);
+  for (int i = 0; i < static_cast<int>(polytope.vertices.size()); ++i) {
+    if (i != lowest) add(i);
+  }
+  ReduceToFour(points.data(), count, manifold);
+}
+
 }  // namespace
 
 FaceOutcome CollideWithBoxFace(const PlacedConvex& a, const PlacedConvex& q, double margin,
@@ -69,8 +130,15 @@ FaceOutcome CollideWithBoxFace(const PlacedConvex& a, const PlacedConvex& q, dou
     case ConvexKind::kBox:
       AddBoxCorners(plane, manifold);
       break;
-    default:
-      return FaceOutcome::kNotApplicable;
+    case ConvexKind::kCylinder:
+      AddCylinderPoints(plane, manifold);
+      break;
+    case ConvexKind::kCapsule:
+      AddCapsulePoints(plane, manifold);
+      break;
+    case ConvexKind::kPolytope:
+      AddPolytopeVertices(plane, manifold);
+      break;
   }
   return manifold->size > 0 ? FaceOutcome::kTouching : FaceOutcome::kApart;
 }

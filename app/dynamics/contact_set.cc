@@ -44,13 +44,8 @@ CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(marg
   for (const Body& body : scene.bodies) {
     CollisionBody& collision = bodies_.emplace_back();
     collision.pieces = BuildConvexPieces(body.shape);
-    for (const Convex& piece : collision.pieces) {
-      if (piece.kind == ConvexKind::kBox) continue;
-      throw InputError(body.where, body.name + ".shape", "a box, or a union of boxes",
-                       std::string("a ") + ShapeKind(body.shape));
-    }
     if (collision.pieces.empty()) {
-      throw InputError(body.where, body.name + ".shape", "a box, or a union of boxes",
+      throw InputError(body.where, body.name + ".shape", "a shape with volume",
                        std::string("a ") + ShapeKind(body.shape));
     }
     PREGRASP_CHECK(static_cast<int>(collision.pieces.size()) < kMaxPieces, body.name);

@@ -1,38 +1,12 @@
 #include "app/dynamics/convex.h"
 
-#include <cmath>
+#include <utility>
 #include <variant>
+
+#include "app/dynamics/polytope.h"
 
 namespace pregrasp {
 namespace {
-
-// Corner i of a box has +x if bit 0 is set, +y for bit 1, +z for bit 2.
-std::shared_ptr<const Polytope> MakeBoxPolytope(const Vector3& half) {
-  auto polytope = std::make_shared<Polytope>();
-  for (int i = 0; i < 8; ++i) {
-    polytope->vertices.push_back(Vector3((i & 1) != 0 ? half.x() : -half.x(),
-                                         (i & 2) != 0 ? half.y() : -half.y(),
-                                         (i & 4) != 0 ? half.z() : -half.z()));
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    const int bit = 1 << axis, bit_u = 1 << (axis + 1) % 3, bit_v = 1 << (axis + 2) % 3;
-    for (const int side : {0, bit}) {
-      Polytope::Face face;
-      face.nhat = (side != 0 ? 1.0 : -1.0) * Vector3::Unit(axis);
-      face.offset = half[axis];
-      face.first = static_cast<int>(polytope->corners.size());
-      face.count = 4;
-      if (side != 0) {
-        polytope->corners.insert(polytope->corners.end(),
-                                 {side, side | bit_u, side | bit_u | bit_v, side | bit_v});
-      } else {
-        polytope->corners.insert(polytope->corners.end(), {0, bit_v, bit_u | bit_v, bit_u});
-      }
-      polytope->faces.push_back(face);
-    }
-  }
-  return polytope;
-}
 
 struct PieceBuilder {
   RigidTransform X_BP;
@@ -42,7 +16,7 @@ struct PieceBuilder {
     Convex convex;
     convex.kind = ConvexKind::kBox;
     convex.half = 0.5 * box.size;
-    convex.polytope = MakeBoxPolytope(convex.half);
+    convex.polytope = std::make_shared<Polytope>(MakeBoxPolytope(convex.half));
     Add(convex);
   }
   void operator()(const Cylinder& cylinder) const {
@@ -62,12 +36,24 @@ struct PieceBuilder {
     Add(convex);
   }
   void operator()(const Sphere& sphere) const { (*this)(Capsule{sphere.radius, 0.0}); }
-  void operator()(const Mesh&) const {}
-  void operator()(const Cloud&) const {}
+  void operator()(const Mesh& mesh) const { AddHull(mesh.mesh); }
+  void operator()(const Cloud& cloud) const { AddHull(cloud.mesh); }
   void operator()(const Union& whole) const {
     for (const PlacedShape& part : whole.parts) {
       std::visit(PieceBuilder{X_BP * part.X_BP, pieces}, part.shape);
     }
+  }
+
+  void AddHull(const TriangleMesh& hull) const {
+    const Vector3 low = hull.V.colwise().minCoeff(), high = hull.V.colwise().maxCoeff();
+    const Vector3 center = 0.5 * (low + high);
+    TriangleMesh centered = hull;
+    centered.V.rowwise() -= center.transpose();
+    Convex convex;
+    convex.kind = ConvexKind::kPolytope;
+    convex.half = 0.5 * (high - low);
+    convex.polytope = std::make_shared<Polytope>(MakePolytope(centered));
+    PieceBuilder{X_BP * Eigen::Translation3d(center), pieces}.Add(convex);
   }
 
   void Add(Convex convex) const {

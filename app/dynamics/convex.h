@@ -14,6 +14,7 @@ enum class ConvexKind : std::uint8_t { kBox, kPolytope, kCylinder, kCapsule };
 /// A bounded convex polyhedron: faces are planes with their corners in counter-clockwise order seen
 /// from outside.
 struct Polytope {
+  static constexpr int kMaxCorners = 96;  ///< of one face
   struct Face {
     Vector3 nhat = Vector3::UnitZ();  ///< outward
     double offset = 0.0;              ///< nhat . p of its points [m]
