@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "app/core/check.h"
 #include "app/core/error.h"
@@ -12,7 +11,8 @@
 namespace pregrasp {
 namespace {
 
-constexpr double kBorder = 0.10;           // share of the picture left free on each side
+// Shares of the picture left free around a focus; the card and the footer lie at top and bottom.
+constexpr double kSideBorder = 0.10, kTopBorder = 0.15, kBottomBorder = 0.11;
 constexpr double kSmallestDistance = 0.1;  // for a focus of a single point [m]
 
 }  // namespace
@@ -63,30 +63,23 @@ RenderCamera FrameCamera(const MatrixX3& focus, const Vector3& dir_W, double asp
   PREGRASP_CHECK(dir_W.allFinite() && dir_W.norm() > 1e-9, dir_W.transpose());
   const Vector3 back = dir_W.normalized();
   const Matrix3 R_WCam = CameraAxes(back);
-  // In the camera's axes about the world's origin. A camera at c sees a point x between its left
-  // and right planes if |x - c| <= t (c_z - x_z) along x; each side bounds c by the extreme of x -+
-  // t z, and the two bounds meet where the camera is as near as it can be. The same along y.
+  // In the camera's axes about the world's origin. A camera at c has a point x left of its right
+  // border if x_x - c_x <= t (c_z - x_z), and likewise on each side: the extremes of x +- t z bound
+  // c, and the two bounds of an axis meet where the camera is as near as it can be.
   const MatrixX3 p = focus * R_WCam;
-  const double t_y = std::tan(0.5 * DegToRad(fov_deg)) * (1.0 - 2.0 * kBorder);
-  const double t[2] = {t_y * aspect, t_y};
-  Vector3 c(0.0, 0.0, -std::numeric_limits<double>::infinity());
+  const double tan_y = std::tan(0.5 * DegToRad(fov_deg)), tan_x = tan_y * aspect;
+  const double t_high[2] = {tan_x * (1.0 - 2.0 * kSideBorder), tan_y * (1.0 - 2.0 * kTopBorder)};
+  const double t_low[2] = {tan_x * (1.0 - 2.0 * kSideBorder), tan_y * (1.0 - 2.0 * kBottomBorder)};
+  Vector2 high, low;
+  Vector3 c(0.0, 0.0, p.col(2).maxCoeff() + kSmallestDistance);
   for (int axis = 0; axis < 2; ++axis) {
-    const double high = (p.col(axis) + t[axis] * p.col(2)).maxCoeff();
-    const double low = (p.col(axis) - t[axis] * p.col(2)).minCoeff();
-    c[axis] = 0.5 * (high + low);
-    c.z() = std::max(c.z(), 0.5 * (high - low) / t[axis]);
+    high[axis] = (p.col(axis) + t_high[axis] * p.col(2)).maxCoeff();
+    low[axis] = (p.col(axis) - t_low[axis] * p.col(2)).minCoeff();
+    c.z() = std::max(c.z(), (high[axis] - low[axis]) / (t_high[axis] + t_low[axis]));
   }
-  const double front = p.col(2).maxCoeff();
-  c.z() = std::max(c.z(), front + kSmallestDistance);
-  // With the distance fixed by one axis, the other has room to spare: centre what it shows.
+  // What room the distance leaves on an axis is shared between its two sides.
   for (int axis = 0; axis < 2; ++axis) {
-    const auto depth = (c.z() - p.col(2).array()).eval();
-    const double high = (p.col(axis).array() / depth).maxCoeff();
-    const double low = (p.col(axis).array() / depth).minCoeff();
-    const double middle = 0.5 * (high + low) * (c.z() - p.col(2).mean());
-    const double bound_high = (p.col(axis) + t[axis] * p.col(2)).maxCoeff() - t[axis] * c.z();
-    const double bound_low = (p.col(axis) - t[axis] * p.col(2)).minCoeff() + t[axis] * c.z();
-    c[axis] = std::clamp(middle, std::min(bound_high, bound_low), std::max(bound_high, bound_low));
+    c[axis] = 0.5 * (high[axis] - t_high[axis] * c.z() + low[axis] + t_low[axis] * c.z());
   }
   RenderCamera camera;
   camera.fov_deg = fov_deg;

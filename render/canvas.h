@@ -34,6 +34,9 @@ class Canvas {
  public:
   Canvas(Image& image, FontSet& fonts) : image_(image), fonts_(fonts) {}
 
+  double width() const { return image_.width; }
+  double height() const { return image_.height; }
+
   void FillRect(const Rect& rect, const Rgba& color);
   void FillRoundedRect(const Rect& rect, double radius, const Rgba& color);
   void FillDisc(const Vector2& center, double radius, const Rgba& color);

@@ -42,6 +42,7 @@ GlContext::GlContext() {
   MakeCurrent();
   static std::once_flag once;
   std::call_once(once, LoadFunctions);
+  gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // depths are 0 to 1 from projection to buffer
 }
 
 GlContext::~GlContext() {

@@ -71,6 +71,7 @@ namespace pregrasp {
   X(TexStorage3D)                      \
   X(Uniform1i)                         \
   X(Uniform1f)                         \
+  X(Uniform2f)                         \
   X(UniformBlockBinding)               \
   X(UniformMatrix4fv)                  \
   X(Uniform4fv)                        \

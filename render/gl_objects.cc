@@ -13,6 +13,18 @@ void SetClampedNearest(GLenum target) {
   gl.TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
+GlFramebuffer BindNewFramebuffer() {
+  GLuint name = 0;
+  gl.GenFramebuffers(1, &name);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, name);
+  return GlFramebuffer(name);
+}
+
+void CheckComplete() {
+  const GLenum status = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
+  PREGRASP_CHECK(status == GL_FRAMEBUFFER_COMPLETE, status);
+}
+
 GLuint Compile(GLenum kind, const std::vector<std::string>& files,
                const std::vector<std::string>& defines) {
   std::string text = "#version 450 core\n";
@@ -46,12 +58,6 @@ GlVertexArray MakeVertexArray() {
   return GlVertexArray(name);
 }
 
-GlFramebuffer MakeFramebuffer() {
-  GLuint name = 0;
-  gl.GenFramebuffers(1, &name);
-  return GlFramebuffer(name);
-}
-
 GlTexture MakeTexture2D(GLenum format, int width, int height, int samples) {
   GLuint name = 0;
   gl.GenTextures(1, &name);
@@ -73,6 +79,29 @@ GlTexture MakeTextureArray(GLenum format, int size, int layers) {
   gl.TexStorage3D(GL_TEXTURE_2D_ARRAY, 1, format, size, size, layers);
   SetClampedNearest(GL_TEXTURE_2D_ARRAY);
   return GlTexture(name);
+}
+
+GlFramebuffer MakeFramebuffer(const GlTexture* color, const GlTexture* depth) {
+  GlFramebuffer framebuffer = BindNewFramebuffer();
+  if (color != nullptr) {
+    gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, color->get(), 0);
+  }
+  if (depth != nullptr) {
+    gl.FramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth->get(), 0);
+  }
+  CheckComplete();
+  return framebuffer;
+}
+
+GlFramebuffer MakeLayerFramebuffer(GLenum attachment, const GlTexture& array, int layer) {
+  GlFramebuffer framebuffer = BindNewFramebuffer();
+  gl.FramebufferTextureLayer(GL_FRAMEBUFFER, attachment, array.get(), 0, layer);
+  if (attachment == GL_DEPTH_ATTACHMENT) {
+    gl.DrawBuffer(GL_NONE);
+    gl.ReadBuffer(GL_NONE);
+  }
+  CheckComplete();
+  return framebuffer;
 }
 
 GlProgram::GlProgram(const std::vector<std::string>& vertex,

@@ -51,7 +51,6 @@ using GlVertexArray = GlName<DeleteVertexArray>;
 
 GlBuffer MakeBuffer();
 GlVertexArray MakeVertexArray();
-GlFramebuffer MakeFramebuffer();
 
 /// Immutable storage; nearest filtering and clamped edges.
 /// @param samples  0 for an ordinary texture.
@@ -65,6 +64,11 @@ void Upload(const GlBuffer& buffer, GLenum target, const std::vector<T>& values,
   gl.BindBuffer(target, buffer.get());
   gl.BufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data(), usage);
 }
+
+/// A complete framebuffer of one texture or two; null leaves a part out.
+GlFramebuffer MakeFramebuffer(const GlTexture* color, const GlTexture* depth);
+/// Of one layer of an array.
+GlFramebuffer MakeLayerFramebuffer(GLenum attachment, const GlTexture& array, int layer);
 
 /// A linked program made of the named files of render/shaders; the uniform block Frame is
 /// bound to slot 0 if the program has it.

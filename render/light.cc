@@ -7,7 +7,7 @@ namespace pregrasp {
 namespace {
 
 constexpr double kElevation = 50.0 * kPi / 180.0;
-constexpr double kAzimuth = 40.0 * kPi / 180.0;  // from the camera's side towards its left
+constexpr double kAzimuth = 35.0 * kPi / 180.0;  // from the camera's side towards its left
 constexpr double kLowest = 0.25;  // sine of the elevation that still allows obliqueness
 constexpr double kFar = 8.0;      // of the view that gets shadows, target distances
 

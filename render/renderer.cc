@@ -13,10 +13,12 @@
 #include "render/camera.h"
 #include "render/font.h"
 #include "render/frame_content.h"
+#include "render/frame_data.h"
 #include "render/light.h"
+#include "render/occlusion_pass.h"
 #include "render/overlay.h"
-#include "render/passes.h"
-#include "render/targets.h"
+#include "render/picture_pass.h"
+#include "render/shadow_pass.h"
 
 namespace pregrasp {
 namespace {
@@ -94,7 +96,10 @@ struct Renderer::Impl {
   GlContext context;
   MeshCache cache;
   AnnotationMeshes annotations;
-  Passes passes;
+  FrameData data;
+  ShadowPass shadow_pass;
+  OcclusionPass occlusion_pass;
+  PicturePass picture_pass;
   FontSet fonts;
   std::optional<TileTargets> tile;
   std::optional<ShadowTargets> shadows;
@@ -204,24 +209,23 @@ Image Renderer::Render(const RenderScene& scene, const RenderConfig& config) {
   to_light.normalize();
   const ShadowFit fit = FitShadow(view, to_light, content.solid_bounds_W);
   FrameBlock frame = impl.MakeFrame(scene, view, fit, to_light, GroundHeight(scene, content));
-  impl.passes.Begin(content, impl.cache);
-  impl.passes.SetFrame(frame);
-  impl.passes.DrawShadows(content, *impl.shadows);
-  const bool still = config.quality == RenderQuality::kStill;
-  if (still) impl.passes.DrawOcclusion(content, *impl.occlusion, scene.ground);
-
+  impl.data.Upload(content, impl.cache);
+  impl.data.SetBlock(frame);
+  impl.shadow_pass.Run(content, *impl.shadows);
+  if (config.quality == RenderQuality::kStill) {
+    impl.occlusion_pass.Run(content, scene.ground, *impl.occlusion);
+  }
   Image image{config.width, config.height, {}};
   image.rgb.resize(static_cast<std::size_t>(config.width) * config.height * 3);
   for (int y = 0; y < config.height; y += kTile) {
     for (int x = 0; x < config.width; x += kTile) {
-      const int w = std::min(kTile, config.width - x), h = std::min(kTile, config.height - y);
       frame.picture[2] = static_cast<float>(x);
       frame.picture[3] = static_cast<float>(y);
-      impl.passes.SetFrame(frame);
-      impl.passes.DrawTile(content, config.quality, *impl.tile, *impl.shadows,
-                           still ? &*impl.occlusion : nullptr, scene.ground,
-                           {-x, -y, config.width, config.height});
-      impl.ReadTile(x, y, w, h, image);
+      impl.data.SetBlock(frame);
+      impl.picture_pass.Run(content, impl.data, config.quality, scene.ground, *impl.tile,
+                            {x, y, config.width, config.height});
+      impl.ReadTile(x, y, std::min(kTile, config.width - x), std::min(kTile, config.height - y),
+                    image);
     }
   }
   DrawOverlay(image, impl.fonts, scene, view, scene.ground ? GridSpacing(view) : 0.0);

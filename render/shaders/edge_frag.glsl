@@ -1,4 +1,4 @@
-// kBevel: a crease catches light as the narrow bevel of a real edge does. Otherwise a plain line.
+// BEVEL: a crease catches light as the narrow bevel of a real edge does. Otherwise a plain line.
 uniform vec4 color;            // linear; opacity
 uniform vec4 surface;
 in vec2 v_at;
@@ -13,7 +13,7 @@ void main() {
 #ifdef BEVEL
   alpha *= smoothstep(4.0, 16.0, v_length / tuning.z);
   float facing = dot(v_n, to_light.xyz);
-  float shadow = smoothstep(0.0, 0.12, facing) * Shadow(facing > 0.0, v_p, v_n);
+  float shadow = smoothstep(0.02, 0.2, facing) * Shadow(facing > 0.0, v_p, v_n);
   vec3 light = Lit(v_p, v_n, color.rgb, surface.x, surface.y, shadow, 1.0);
   pixel = vec4(Display(1.12 * light + 0.06 + 0.10 * shadow), alpha);
 #else

@@ -4,7 +4,7 @@ layout(location = 1) in vec3 q;
 layout(location = 2) in vec3 n;
 layout(location = 3) in vec3 m;
 uniform mat4 world_from_body;
-uniform vec4 style;            // width [pixels at 720]; 1 keeps edges of hidden faces
+uniform float width;           // [pixels] at 720
 
 out vec2 v_at;
 out vec3 v_p;
@@ -18,7 +18,7 @@ void main() {
   vec4 a = clip_from_world * vec4(wp, 1.0), b = clip_from_world * vec4(wq, 1.0);
   float near = tuning.x;
   vec3 to_eye = eye.xyz - wp;
-  bool hidden = dot(wn, to_eye) <= 0.0 && dot(wm, to_eye) <= 0.0 && style.y < 0.5;
+  bool hidden = dot(wn, to_eye) <= 0.0 && dot(wm, to_eye) <= 0.0;
   if (hidden || (a.w < near && b.w < near)) {
     gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
     return;
@@ -38,7 +38,7 @@ void main() {
   v_length = length(pb - pa);
   vec2 along = v_length > 1e-4 ? (pb - pa) / v_length : vec2(1.0, 0.0);
   vec2 across = vec2(-along.y, along.x);
-  v_width = max(style.x * tuning.z, 1.0);
+  v_width = max(width * tuning.z, 1.0);
   v_n = normalize(wn + wm + 1e-6);
   float reach = 0.5 * v_width + 0.5;
   bool end = (gl_VertexID & 1) == 1;

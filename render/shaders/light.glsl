@@ -1,9 +1,9 @@
 // One warm key light, two-tone ambient light from sky and floor, a little from the camera. All
 // colours are linear until Display.
 const float kPi = 3.14159265;
-const vec3 kKey = vec3(0.86, 0.82, 0.76);
-const vec3 kSky = vec3(0.40, 0.42, 0.46);
-const vec3 kFloor = vec3(0.22, 0.205, 0.19);
+const vec3 kKey = vec3(0.76, 0.72, 0.66);
+const vec3 kSky = vec3(0.345, 0.365, 0.40);
+const vec3 kFloor = vec3(0.20, 0.185, 0.17);
 const vec3 kFill = vec3(0.10, 0.10, 0.105);
 
 vec3 Ambient(vec3 n) { return mix(kFloor, kSky, smoothstep(-1.0, 1.0, n.z)); }

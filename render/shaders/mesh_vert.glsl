@@ -6,6 +6,10 @@ layout(location = 4) in vec4 row_z;
 layout(location = 5) in vec4 color;
 layout(location = 6) in vec4 surface;
 
+#ifdef TRANSLUCENT
+uniform float nearer;  // share of the distance
+#endif
+
 invariant gl_Position;
 out vec3 v_p;
 out vec3 v_n;
@@ -21,4 +25,7 @@ void main() {
   v_color = color;
   v_surface = surface;
   gl_Position = clip_from_world * vec4(v_p, 1.0);
+#ifdef TRANSLUCENT
+  gl_Position.z *= 1.0 + nearer;  // reversed depth
+#endif
 }

@@ -16,7 +16,7 @@ void main() {
   if (v_surface.w < 0.5) {
     open = Openness();
     // Light that grazes a smooth surface fades before its facets would show in the shadow.
-    float fade = smoothstep(0.0, 0.12, dot(n, to_light.xyz));
+    float fade = smoothstep(0.02, 0.2, dot(n, to_light.xyz));
     shadow = fade * Shadow(fade > 0.0, v_p, face);
   }
   pixel = vec4(Display(Lit(v_p, n, albedo, v_surface.x, v_surface.y, shadow, open)), 1.0);

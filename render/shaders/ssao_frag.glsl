@@ -8,12 +8,6 @@ out float open;
 
 const int kTaps = 16;
 
-vec3 ViewPosition(ivec2 at, vec2 size) {
-  float depth = tuning.x / max(texelFetch(depths, at, 0).r, 1e-9);
-  vec2 ndc = 2.0 * (vec2(at) + 0.5) / size - 1.0;
-  return vec3(ndc * eye.w * vec2(picture.x / picture.y, 1.0), -1.0) * depth;
-}
-
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy), last = textureSize(depths, 0) - 1;
   vec2 size = vec2(last + 1);
@@ -21,7 +15,7 @@ void main() {
     open = 1.0;
     return;
   }
-  vec3 p = ViewPosition(at, size);
+  vec3 p = ViewPosition(depths, at, size);
   vec3 n = texelFetch(normals, at, 0).xyz * 2.0 - 1.0;
   float radius = tuning.y;
   float radius_px = min(radius * 0.5 * size.y / (eye.w * -p.z), 0.25 * size.y);
@@ -32,10 +26,10 @@ void main() {
     float share = (float(i) + 0.5 + float(cell & 3) * 0.25 - 0.375) / float(kTaps);
     float angle = turn + float(i) * 2.399963;
     ivec2 tap = clamp(at + ivec2(round(share * radius_px * vec2(cos(angle), sin(angle)))), ivec2(0), last);
-    vec3 d = ViewPosition(tap, size) - p;
+    vec3 d = ViewPosition(depths, tap, size) - p;
     float dd = dot(d, d), rise = dot(d, n);
     float fall = max(1.0 - dd / (radius * radius), 0.0);
     sum += fall * fall * max(rise - 0.004 * -p.z * 0.5 - 0.02 * radius, 0.0) / (sqrt(dd) + 0.05 * radius);
   }
-  open = clamp(1.0 - 2.1 * sum / float(kTaps), 0.0, 1.0);
+  open = clamp(1.0 - 3.4 * sum / float(kTaps), 0.0, 1.0);
 }

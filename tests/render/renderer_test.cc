@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/core/error.h"
+#include "app/core/rng.h"
 #include "render/camera.h"
 #include "render/palette.h"
 #include "tests/render/sample_scenes.h"
@@ -126,6 +127,57 @@ TEST(RendererTest, FlatSurfacesHaveNoAcne) {
       const Vector2 at(x, 90), next(x + 1, 90);
       EXPECT_LE(std::abs(Brightness(image, at) - Brightness(image, next)), 3)
           << elevation_deg << " at " << x;
+    }
+  }
+}
+
+TEST(RendererTest, PlanesInAnyDirectionHaveNoAcne) {
+  Rng rng(11);
+  int checked = 0;
+  for (int seed = 0; seed < 40; ++seed) {
+    RenderScene scene;
+    scene.ground = scene.axes = false;
+    scene.camera.p_WCam = {0.0, -0.5, 0.5};
+    RenderBody box = Body(BoxMesh({0.3, 0.3, 0.3}), Vector3::Zero(), StaticColor());
+    const Quaternion q_WB = rng.Rotation();
+    box.X_WB.linear() = q_WB.toRotationMatrix();
+    scene.bodies.push_back(box);
+    const RenderQuality quality = static_cast<RenderQuality>(seed % 3);
+    const Image image = SharedRenderer().Render(scene, {320, 180, quality});
+    for (int face = 0; face < 6; ++face) {
+      const Vector3 n_B = (face % 2 == 0 ? 1.0 : -1.0) * Vector3::Unit(face / 2);
+      const Vector3 n_W = q_WB * n_B, center = 0.15 * n_W;
+      if (n_W.dot((scene.camera.p_WCam - center).normalized()) < 0.3) continue;
+      // A walk over the middle of the face: its light changes by a level or two a pixel.
+      const Vector2 at = Pixel(scene, center);
+      for (int x = -4; x < 4; ++x) {
+        const int step = std::abs(Brightness(image, at + Vector2(x, 0)) -
+                                  Brightness(image, at + Vector2(x + 1, 0)));
+        EXPECT_LE(step, 3) << "seed " << seed << " normal " << n_W.transpose();
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(checked, 400);
+}
+
+TEST(RendererTest, GhostsInOnePlaneDoNotFight) {
+  RenderScene scene = BareTable();
+  RenderBody ghost = Body(BoxMesh({0.2, 0.1, 0.003}), {0, 0, 0.0015}, ObjectColor());
+  ghost.shading = Shading::kGhost;
+  ghost.color.a = 0.3F;
+  for (int i = 0; i < 4; ++i) {
+    ghost.X_WB.translation().x() = 0.01 * i;
+    scene.bodies.push_back(ghost);
+  }
+  for (const RenderQuality quality : {RenderQuality::kDraft, RenderQuality::kNormal}) {
+    const Image image = SharedRenderer().Render(scene, {320, 180, quality});
+    // The middle lies under all four.
+    const Vector2 at = Pixel(scene, {0.015, 0, 0.003});
+    for (int x = -20; x < 20; ++x) {
+      EXPECT_LE(std::abs(Brightness(image, at + Vector2(x, 0)) -
+                         Brightness(image, at + Vector2(x + 1, 0))),
+                4);
     }
   }
 }

@@ -1,4 +1,4 @@
-// A sixteenth of the shadow map's texels, each the one of 4 x 4 that is nearest the light.
+// A sixteenth of a depth map's texels, each the one of 4 x 4 that is nearest the light.
 uniform sampler2DArray depths;
 uniform int layer;
 in vec2 v_uv;

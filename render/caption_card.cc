@@ -1,0 +1,214 @@
+#include "render/caption_card.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pregrasp {
+namespace {
+
+const std::string kEllipsis = "\u2026";
+
+// One line of the card, ready to draw.
+struct CardLine {
+  FontFace face = FontFace::kSans;
+  float size = 14.0F;
+  std::string text = {};
+  std::string value = {};  // second column of a row
+  bool row = false;
+  bool title = false;
+
+  double height() const { return std::round(size * (title ? 1.62 : 1.5)); }
+};
+
+std::vector<CardLine> LayOutLines(FontSet& fonts, const OverlayStyle& style,
+                                  const RenderCaption& caption, double width) {
+  std::vector<CardLine> lines;
+  if (!caption.title.empty()) {
+    for (const std::string& text :
+         WrapText(fonts, FontFace::kBold, style.title, caption.title, width)) {
+      lines.push_back({FontFace::kBold, style.title, text, "", false, true});
+    }
+  }
+  for (const std::string& line : caption.lines) {
+    if (const auto tab = line.find('\t'); tab != std::string::npos) {
+      lines.push_back(
+          {FontFace::kSans, style.text, line.substr(0, tab), line.substr(tab + 1), true, false});
+    } else if (line.find("  ") != std::string::npos) {
+      lines.push_back(
+          {FontFace::kMono, style.text, FitText(fonts, FontFace::kMono, style.text, line, width)});
+    } else {
+      for (const std::string& text : WrapText(fonts, FontFace::kSans, style.text, line, width)) {
+        lines.push_back({FontFace::kSans, style.text, text});
+      }
+    }
+  }
+  return lines;
+}
+
+// Cuts rows to the width and returns where their second column starts.
+double AlignRows(FontSet& fonts, const OverlayStyle& style, std::vector<CardLine>& lines,
+                 double width) {
+  double column = 0.0;
+  for (const CardLine& line : lines) {
+    if (line.row) {
+      column = std::max<double>(column, fonts.TextWidth(line.face, line.size, line.text));
+    }
+  }
+  column = std::min(std::ceil(column + style.px(14.0)), 0.6 * width);
+  for (CardLine& line : lines) {
+    if (!line.row) continue;
+    line.text = FitText(fonts, line.face, line.size, line.text, column - style.px(6.0));
+    line.value = FitText(fonts, FontFace::kMono, line.size, line.value, width - column);
+  }
+  return column;
+}
+
+double CutToHeight(const OverlayStyle& style, std::vector<CardLine>& lines, double room) {
+  double height = 0.0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i > 0 && height + lines[i].height() > room) {
+      lines.resize(i);
+      if (!lines.back().title) lines.back() = {FontFace::kSans, style.text, kEllipsis};
+      break;
+    }
+    height += lines[i].height();
+  }
+  return height;
+}
+
+void DrawScale(Canvas& canvas, const Rect& bar, const std::vector<Rgba>& colors) {
+  const auto last = static_cast<double>(colors.size() - 1);
+  for (double x = 0.0; x < bar.width; x += 1.0) {
+    const double t = last * std::clamp((x + 0.5) / bar.width, 0.0, 1.0);
+    const auto i = std::min(static_cast<std::size_t>(t), colors.size() - 1);
+    const Rgba& p = colors[i];
+    const Rgba& q = colors[std::min(i + 1, colors.size() - 1)];
+    const auto f = static_cast<float>(t - static_cast<double>(i));
+    canvas.FillRect({bar.x + x, bar.y, 1.0, bar.height},
+                    {p.r + f * (q.r - p.r), p.g + f * (q.g - p.g), p.b + f * (q.b - p.b), 1.0F});
+  }
+}
+
+}  // namespace
+
+std::string FitText(FontSet& fonts, FontFace face, float size, const std::string& text,
+                    double width) {
+  if (fonts.TextWidth(face, size, text) <= width) return text;
+  std::u32string characters = DecodeUtf8(text);
+  while (!characters.empty()) {
+    characters.pop_back();
+    while (!characters.empty() && characters.back() == U' ') characters.pop_back();
+    const std::string cut = EncodeUtf8(characters) + kEllipsis;
+    if (fonts.TextWidth(face, size, cut) <= width) return cut;
+  }
+  return "";
+}
+
+std::vector<std::string> WrapText(FontSet& fonts, FontFace face, float size,
+                                  const std::string& text, double width) {
+  std::vector<std::string> lines;
+  std::string line;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(' ', start), text.size());
+    const std::string word = text.substr(start, end - start);
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (line.empty() || fonts.TextWidth(face, size, longer) <= width) {
+      line = longer;
+    } else {
+      lines.push_back(FitText(fonts, face, size, line, width));
+      line = word;
+    }
+    start = end + 1;
+  }
+  lines.push_back(FitText(fonts, face, size, line, width));
+  return lines;
+}
+
+std::optional<Rect> DrawCaptionCard(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,
+                                    const RenderCaption& caption, double bottom) {
+  const double pad = style.px(16.0), bar = style.px(4.0), margin = style.px(20.0);
+  const double most =
+      std::min(std::max(0.42 * canvas.width(), 180.0), canvas.width() - 2.0 * margin) - 2.0 * pad -
+      bar;
+  std::vector<CardLine> lines = LayOutLines(fonts, style, caption, most);
+  if (lines.empty()) return std::nullopt;
+  const double column = AlignRows(fonts, style, lines, most);
+  const double height = CutToHeight(style, lines, 0.8 * bottom - margin - 1.5 * pad);
+  double width = 0.0;
+  for (const CardLine& line : lines) {
+    width = std::max<double>(
+        width, line.row ? column + fonts.TextWidth(FontFace::kMono, line.size, line.value)
+                        : fonts.TextWidth(line.face, line.size, line.text));
+  }
+  const Rect card{margin, margin, std::ceil(width) + 2.0 * pad + bar,
+                  std::ceil(height) + 1.5 * pad};
+  canvas.FillRoundedRect(card, style.px(5.0), style.panel);
+  canvas.FillRect({card.x, card.y, bar, card.height}, style.accent);
+  double y = card.y + 0.75 * pad;
+  for (const CardLine& line : lines) {
+    const double cap = fonts.CapHeight(line.face, line.size);
+    const Vector2 at(card.x + bar + pad, y + 0.5 * (line.height() + cap));
+    canvas.DrawText(line.face, line.size, at, line.text,
+                    line.title ? style.bright : (line.row ? style.muted : style.normal));
+    if (line.row) {
+      canvas.DrawText(FontFace::kMono, line.size, at + Vector2(column, 0.0), line.value,
+                      style.bright);
+    }
+    y += line.height();
+  }
+  return card;
+}
+
+std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,
+                               const RenderLegend& legend, double bottom) {
+  if (legend.title.empty() && legend.scale.empty() && legend.swatches.empty()) return std::nullopt;
+  const double pad = style.px(12.0), line = std::round(style.small * 1.55);
+  const double bar_width = style.px(220.0), bar_height = style.px(12.0);
+  const auto text_width = [&](const std::string& text) {
+    return static_cast<double>(fonts.TextWidth(FontFace::kSans, style.small, text));
+  };
+  double width = std::max(legend.scale.empty() ? 0.0 : bar_width, text_width(legend.title));
+  double height = legend.title.empty() ? 0.0 : line;
+  if (!legend.scale.empty()) height += bar_height + (legend.ticks.empty() ? 0.0 : line);
+  for (const auto& [color, text] : legend.swatches) {
+    width = std::max(width, 1.6 * line + text_width(text));
+    height += line;
+  }
+  const double margin = style.px(20.0);
+  const Vector2 size(std::ceil(width) + 2.0 * pad, std::ceil(height) + 1.6 * pad);
+  const Rect card{canvas.width() - margin - size.x(), bottom - margin - size.y(), size.x(),
+                  size.y()};
+  if (card.x < margin || card.y < margin) return std::nullopt;
+
+  canvas.FillRoundedRect(card, style.px(5.0), style.panel);
+  double y = card.y + 0.8 * pad;
+  const double x = card.x + pad;
+  const auto write = [&](double left, const std::string& text, const Rgba& color) {
+    const double cap = fonts.CapHeight(FontFace::kSans, style.small);
+    canvas.DrawText(FontFace::kSans, style.small, {left, y + 0.5 * (line + cap)}, text, color);
+  };
+  if (!legend.title.empty()) {
+    write(x, legend.title, style.normal);
+    y += line;
+  }
+  if (!legend.scale.empty()) {
+    DrawScale(canvas, {x, y, bar_width, bar_height}, legend.scale);
+    y += bar_height;
+    for (const auto& [at, text] : legend.ticks) {
+      const double w = text_width(text);
+      write(x + std::clamp(std::clamp(at, 0.0, 1.0) * bar_width - 0.5 * w, 0.0,
+                           std::max(0.0, width - w)),
+            text, style.muted);
+    }
+    if (!legend.ticks.empty()) y += line;
+  }
+  for (const auto& [color, text] : legend.swatches) {
+    canvas.FillRoundedRect({x, y + 0.18 * line, line, 0.64 * line}, style.px(2.0),
+                           WithAlpha(color, 1.0F));
+    write(x + 1.6 * line, text, style.normal);
+    y += line;
+  }
+  return card;
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include "render/canvas.h"
+#include "render/caption_card.h"
+#include "render/font.h"
+#include "render/palette.h"
+
+namespace pregrasp {
+namespace {
+
+Image White(int width, int height) {
+  return {width, height,
+          std::vector<std::uint8_t>(static_cast<std::size_t>(width) * height * 3, 255)};
+}
+
+TEST(Utf8Test, DecodesAndEncodesEveryLength) {
+  const std::string text = "a\u00b0\u03bb\u2192\U0001F600";
+  const std::u32string decoded = DecodeUtf8(text);
+  EXPECT_EQ(decoded, U"a\u00b0\u03bb\u2192\U0001F600");
+  EXPECT_EQ(EncodeUtf8(decoded), text);
+}
+
+TEST(Utf8Test, MalformedBytesBecomeReplacementsAndNeverRunPastTheEnd) {
+  EXPECT_EQ(DecodeUtf8("\xff"), U"\ufffd");
+  EXPECT_EQ(DecodeUtf8("a\x80z"), U"a\ufffdz");
+  EXPECT_EQ(DecodeUtf8("\xe2\x86"), U"\ufffd");
+  EXPECT_EQ(DecodeUtf8("\xc0\xaf"), U"\ufffd\ufffd");
+}
+
+TEST(FontTest, HasTheCharactersOfCaptions) {
+  FontSet fonts;
+  for (const FontFace face : {FontFace::kSans, FontFace::kBold, FontFace::kMono}) {
+    const Glyph& missing = fonts.GetGlyph(face, 16.0F, 0x10FFFD);
+    for (const char32_t c : std::u32string(U"aZ09\u00b0\u00b5\u03bb\u03bc\u03c3\u03c6\u00d7\u00b7"
+                                           U"\u2192\u2190\u2026\u2265\u00b1")) {
+      const Glyph& glyph = fonts.GetGlyph(face, 16.0F, c);
+      EXPECT_GT(glyph.advance, 0.0F) << static_cast<int>(c);
+      EXPECT_NE(glyph.coverage, missing.coverage) << static_cast<int>(c);
+    }
+  }
+}
+
+TEST(FontTest, MonospaceHasOneWidth) {
+  FontSet fonts;
+  EXPECT_FLOAT_EQ(fonts.TextWidth(FontFace::kMono, 14.0F, "iiii"),
+                  fonts.TextWidth(FontFace::kMono, 14.0F, "W\u03bb\u2192\u00b0"));
+}
+
+TEST(CaptionTest, WrappedLinesFitAndKeepEveryWord) {
+  FontSet fonts;
+  const std::string text =
+      "The index finger presses down and drags the ruler over the edge of the table";
+  for (const double width : {60.0, 120.0, 300.0, 2000.0}) {
+    std::string joined;
+    for (const std::string& line : WrapText(fonts, FontFace::kSans, 14.0F, text, width)) {
+      EXPECT_LE(fonts.TextWidth(FontFace::kSans, 14.0F, line), width);
+      joined += (joined.empty() ? "" : " ") + line;
+    }
+    EXPECT_EQ(joined, text);
+  }
+}
+
+TEST(CaptionTest, TooLongAWordIsCutWithAnEllipsis) {
+  FontSet fonts;
+  const std::string cut =
+      FitText(fonts, FontFace::kMono, 12.0F,
+              "\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb\u03bb", 50.0);
+  EXPECT_LE(fonts.TextWidth(FontFace::kMono, 12.0F, cut), 50.0);
+  EXPECT_EQ(DecodeUtf8(cut).back(), U'\u2026');
+  EXPECT_EQ(DecodeUtf8(cut).front(), U'\u03bb');
+  EXPECT_EQ(FitText(fonts, FontFace::kMono, 12.0F, "short", 500.0), "short");
+}
+
+TEST(CanvasTest, ShapesCoverWhatTheyShouldWithSoftEdges) {
+  FontSet fonts;
+  Image image = White(40, 40);
+  Canvas canvas(image, fonts);
+  canvas.FillRect({10.5, 10, 9.5, 10}, FromSrgb(0x000000));
+  const auto at = [&image](int x, int y) { return image.rgb[(y * 40 + x) * 3]; };
+  EXPECT_EQ(at(9, 15), 255);
+  EXPECT_NEAR(at(10, 15), 128, 1);  // half covered
+  EXPECT_EQ(at(11, 15), 0);
+  EXPECT_EQ(at(19, 15), 0);
+  EXPECT_EQ(at(20, 15), 255);
+  canvas.FillDisc({30, 30}, 5.0, FromSrgb(0x000000, 0.5F));
+  EXPECT_NEAR(at(30, 30), 128, 1);
+  EXPECT_EQ(at(36, 30), 255);
+  double covered = 0.0;  // the area of a disc, from its pixels
+  for (int y = 22; y < 38; ++y) {
+    for (int x = 22; x < 38; ++x) covered += (255 - at(x, y)) / 127.5;
+  }
+  EXPECT_NEAR(covered, kPi * 25.0, 1.0);
+}
+
+TEST(CanvasTest, NothingIsDrawnOutsideThePicture) {
+  FontSet fonts;
+  Image image = White(16, 16);
+  Canvas canvas(image, fonts);
+  canvas.FillRoundedRect({-10, -10, 50, 5}, 3, ObjectColor());
+  canvas.FillDisc({100, 100}, 20, ObjectColor());
+  canvas.DrawLine({-50, -20}, {-5, 60}, 4, ObjectColor());
+  canvas.DrawText(FontFace::kSans, 20, {-500, 5}, "far to the left", ObjectColor());
+  canvas.DrawText(FontFace::kSans, 20, {17, 15}, "right", ObjectColor());
+  EXPECT_EQ(image.rgb, White(16, 16).rgb);
+}
+
+TEST(PaletteTest, ScoreColoursRiseEvenlyInLightness) {
+  double last = -1.0;
+  for (int i = 0; i <= 100; ++i) {
+    const Rgba c = ScoreColor(i / 100.0);
+    const double luminance = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+    EXPECT_GT(luminance, last) << i;
+    last = luminance;
+  }
+  EXPECT_EQ(ScoreColor(-1.0).b, ScoreColor(0.0).b);
+  EXPECT_EQ(ScoreColor(2.0).r, ScoreColor(1.0).r);
+}
+
+}  // namespace
+}  // namespace pregrasp
