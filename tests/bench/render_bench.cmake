@@ -1,0 +1,3 @@
+pregrasp_bench(render_bench
+  SOURCES render_bench.cc ../render/sample_scenes.cc
+  DEPENDS pregrasp_render)
