@@ -66,8 +66,7 @@ Matrix3 JsonReader::Mat3() const {
 
 Quaternion JsonReader::Quat() const {
   if (size() != 4) Fail("a quaternion [w, x, y, z]");
-  const Quaternion q((*this)[0].Number(), (*this)[1].Number(), (*this)[2].Number(),
-                     (*this)[3].Number());
+  Quaternion q((*this)[0].Number(), (*this)[1].Number(), (*this)[2].Number(), (*this)[3].Number());
   if (!(std::abs(q.norm() - 1.0) < 1e-6)) Fail("a quaternion [w, x, y, z] of length 1");
   return q;
 }

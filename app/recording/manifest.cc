@@ -80,7 +80,7 @@ RunFiles ListRunFiles(const fs::path& directory) {
   return found;
 }
 
-void WriteManifest(const fs::path& directory, nlohmann::ordered_json fields) {
+void WriteManifest(const fs::path& directory, const nlohmann::ordered_json& fields) {
   nlohmann::ordered_json files = nlohmann::ordered_json::object();
   files[kName] = "";
   for (const std::string& file : ListRunFiles(directory).files) {

@@ -31,7 +31,7 @@ RunFiles ListRunFiles(const std::filesystem::path& directory);
 /// Writes manifest.json: `fields`, then `files`: the SHA-256 of every file in `directory`, of a
 /// symbolic link's target in its place, and of manifest.json itself with that one field empty.
 /// @throws InputError as CheckedFile.
-void WriteManifest(const std::filesystem::path& directory, nlohmann::ordered_json fields);
+void WriteManifest(const std::filesystem::path& directory, const nlohmann::ordered_json& fields);
 
 /// Whether `directory` holds a manifest.json of a run, which is what makes it a finished run.
 /// Compares no hashes.

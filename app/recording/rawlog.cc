@@ -12,7 +12,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include <cmath>
-#include <string_view>
+#include <utility>
 
 #include "app/core/check.h"
 #include "app/core/error.h"
@@ -142,7 +142,8 @@ namespace {
 // Everything in a frame, with what is read from it checked against the step's comment.
 class FrameReader {
  public:
-  FrameReader(const CSensoryFrame& frame, std::string where) : frame_(frame), where_(where) {}
+  FrameReader(const CSensoryFrame& frame, std::string where)
+      : frame_(frame), where_(std::move(where)) {}
 
   StepRecord ReadStep() const {
     const auto comment = frame_.getObservationByClass<CObservationComment>();

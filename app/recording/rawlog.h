@@ -32,7 +32,7 @@ class RawlogWriter {
 };
 
 /// A log read back through MRPT.
-struct Rawlog {
+struct Rawlog {                   // NOLINT(bugprone-exception-escape): moving JSON does not throw
   nlohmann::json header;          ///< the global comment
   std::vector<StepRecord> steps;  ///< poses and contacts from the typed observations, the rest from
                                   ///< each step's comment

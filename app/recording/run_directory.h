@@ -68,7 +68,7 @@ class RunDirectory {
 };
 
 /// A run directory read back.
-struct LoadedRun {
+struct LoadedRun {  // NOLINT(bugprone-exception-escape): moving JSON does not throw
   nlohmann::json summary, manifest, scene;
   std::vector<StepRecord> steps;
 };

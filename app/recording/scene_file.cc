@@ -76,7 +76,7 @@ class ShapeWriter {
  private:
   std::string Write(const char* ending, const TriangleMesh& mesh) const {
     MakeFolder(directory_ / "meshes");
-    const std::string file = "meshes/" + name_ + ending;
+    std::string file = "meshes/" + name_ + ending;
     WriteObj(directory_ / file, mesh);
     return file;
   }
