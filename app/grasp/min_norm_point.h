@@ -1,7 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cmath>
+#include <limits>
 
 #include "app/core/math.h"
 
@@ -37,10 +38,34 @@ struct MinNormPoint {
 
 namespace internal {
 
-/// The weights (summing to 1) of the point of smallest norm in the affine hull of size <= 7 points;
-/// false if these are affinely dependent to working precision.
-bool CalcAffineMinNorm(const std::array<Vector6, 8>& points, int size,
-                       std::array<double, 8>& weights);
+/// Up to seven affinely independent points of a convex set, the weights of the point of smallest
+/// norm among their combinations, and room for one point more.
+class Corral {
+ public:
+  explicit Corral(const Vector6& start);
+
+  /// The slot and the place of the next point to add; AddPoint takes it in, with weight 0.
+  int free_slot() const { return slots_[size_]; }
+  Vector6& free_point() { return points_[size_]; }
+  void AddPoint() { weights_[size_++] = 0.0; }
+
+  /// Moves the weights to those of smallest norm, leaving out points that these do not need; false
+  /// if the points are affinely dependent to working precision.
+  bool Reduce();
+
+  Vector6 CalcPoint() const;
+  /// Copies slots and weights.
+  void Describe(MinNormPoint* point) const;
+
+ private:
+  bool CalcAffineMinimum(std::array<double, 8>& weights) const;
+  void Remove(int index);
+
+  int size_ = 1;
+  std::array<Vector6, 8> points_;
+  std::array<double, 8> weights_{};
+  std::array<int, 8> slots_{0, 1, 2, 3, 4, 5, 6, 7};  // those from size_ on are free
+};
 
 }  // namespace internal
 
@@ -54,80 +79,39 @@ bool CalcAffineMinNorm(const std::array<Vector6, 8>& points, int size,
 template <typename Support>
 MinNormPoint FindMinNormPoint(const Vector6& start, Support&& support,
                               const MinNormConfig& config) {
-  std::array<Vector6, 8> points;
-  std::array<double, 8> weights{}, target{};
-  std::array<int, 8> slots{0, 1, 2, 3, 4, 5, 6, 7};  // slots[size..] are free
-  points[0] = start;
-  weights[0] = 1.0;
-  int size = 1;
+  // Below these shares of the norm, a step is rounding.
+  constexpr double kLeastStep = 1e-14;
+  constexpr double kClosedGap = 1e-12;
+  using Status = MinNormPoint::Status;
 
+  internal::Corral corral(start);
   MinNormPoint result;
-  double best = std::numeric_limits<double>::infinity();
+  double norm = std::numeric_limits<double>::infinity();
   while (true) {
-    Vector6 v = Vector6::Zero();
-    for (int i = 0; i < size; ++i) v += weights[i] * points[i];
-    const double norm = v.norm();
-    const bool progress = norm < best * (1.0 - 1e-14);
-    if (progress || result.iterations == 0) {
-      best = norm;
-      result.v = v;
-      result.size = std::min(size, 7);
-      for (int i = 0; i < result.size; ++i) {
-        result.slot[i] = slots[i];
-        result.weight[i] = weights[i];
-      }
-    }
+    const Vector6 v = corral.CalcPoint();
+    const double last_norm = norm;
+    norm = v.norm();
+    if (!(norm < last_norm * (1.0 - kLeastStep)) && result.iterations > 0) break;
+    result.v = v;
+    corral.Describe(&result);
     if (norm <= config.tolerance) {
-      result.status = MinNormPoint::Status::kContainsOrigin;
+      result.status = Status::kContainsOrigin;
       return result;
     }
-    if (!progress || result.iterations == config.max_iterations) break;
-    ++result.iterations;
+    if (result.iterations++ == config.max_iterations) break;
 
-    // A new vertex beyond the plane through v, or the plane is the answer.
-    support(Vector6(-v), slots[size], points[size]);
-    const double bound = v.dot(points[size]) / norm;
-    if (bound > result.lower_bound) result.lower_bound = bound;
-    if (bound >= config.separation || norm - bound <= 1e-12 * norm) {
-      result.status = MinNormPoint::Status::kSeparated;
+    // Either there is a vertex beyond the plane through v, or that plane is the answer.
+    support(Vector6(-v), corral.free_slot(), corral.free_point());
+    const double bound = v.dot(corral.free_point()) / norm;
+    result.lower_bound = std::max(result.lower_bound, bound);
+    if (bound >= config.separation || norm - bound <= kClosedGap * norm) {
+      result.status = Status::kSeparated;
       return result;
     }
-    weights[size++] = 0.0;
-
-    // Move to the affine minimum, dropping every vertex whose weight would turn negative.
-    while (true) {
-      if (!internal::CalcAffineMinNorm(points, size, target)) {
-        result.status = result.lower_bound > 0.0 ? MinNormPoint::Status::kSeparated
-                                                 : MinNormPoint::Status::kStalled;
-        return result;
-      }
-      double step = 1.0;
-      int leaving = -1;
-      for (int i = 0; i < size; ++i) {
-        if (target[i] > 0.0) continue;
-        const double ratio = weights[i] / (weights[i] - target[i]);
-        if (leaving < 0 || ratio < step) {
-          step = ratio;
-          leaving = i;
-        }
-      }
-      if (leaving < 0) {
-        weights = target;
-        break;
-      }
-      for (int i = 0; i < size; ++i) weights[i] += step * (target[i] - weights[i]);
-      weights[leaving] = 0.0;
-      int kept = 0;
-      for (int i = 0; i < size; ++i) {
-        if (i == leaving) continue;
-        std::swap(slots[kept], slots[i]);
-        points[kept] = points[i];
-        weights[kept++] = weights[i];
-      }
-      size = kept;
-    }
+    corral.AddPoint();
+    if (!corral.Reduce()) break;
   }
-  if (result.lower_bound > 0.0) result.status = MinNormPoint::Status::kSeparated;
+  result.status = result.lower_bound > 0.0 ? Status::kSeparated : Status::kStalled;
   return result;
 }
 

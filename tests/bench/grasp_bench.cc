@@ -1,10 +1,13 @@
 // What the test of a grasp costs, beside peers that answer the same question.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <vector>
 
+#include "app/grasp/start_certificate.h"
 #include "app/grasp/wrench.h"
 #include "tests/grasp/contact_sets.h"
+#include "tests/grasp/grasp_scenes.h"
 #include "tests/grasp/qhull_margin.h"
 #include "tests/grasp/wrench_lp.h"
 
@@ -109,6 +112,51 @@ void MarginByQhull(benchmark::State& state) {
   CountSets(state, questions.size());
 }
 BENCHMARK(MarginByQhull)->Unit(benchmark::kMillisecond);
+
+// Feasible grasps found by search, on one thread; items are grasps. The ruler overhangs 6 cm.
+void GraspSearch(benchmark::State& state, const Scene& scene) {
+  const GraspWorld world(scene, ShadowHand());
+  ThreadPool pool(1);
+  GraspSearchConfig config;
+  config.max_found = 5;
+  GraspSearchStats sum;
+  std::uint64_t seed = 0;
+  for (auto _ : state) {
+    const GraspSearchStats stats =
+        SearchGrasps(world, config, {}, world.StartPoses(), ++seed, pool).stats;
+    sum.plausible += stats.plausible;
+    sum.solved += stats.solved;
+    sum.reached += stats.reached;
+    sum.feasible += stats.feasible;
+  }
+  state.SetItemsProcessed(sum.feasible);
+  const double grasps = std::max(1, sum.feasible);
+  state.counters["sets_per_grasp"] = sum.plausible / grasps;
+  state.counters["solved_per_grasp"] = sum.solved / grasps;
+  state.counters["reached_per_grasp"] = sum.reached / grasps;
+}
+BENCHMARK_CAPTURE(GraspSearch, ruler, RulerScene(0.06))->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(GraspSearch, carton, FreeCartonScene())->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(GraspSearch, keyboard, KeyboardScene(0.16))->Unit(benchmark::kMillisecond);
+
+void BuildGraspWorld(benchmark::State& state) {
+  const Scene scene = FreeCartonScene();
+  for (auto _ : state) benchmark::DoNotOptimize(GraspWorld(scene, ShadowHand()).object_radius());
+}
+BENCHMARK(BuildGraspWorld)->Unit(benchmark::kMillisecond);
+
+// The verdict on a start that a proof decides, and on one that only a whole search can.
+void StartCertificateOf(benchmark::State& state, const Scene& scene) {
+  const GraspWorld world(scene, ShadowHand());
+  ThreadPool pool(1);
+  StartCertificate certificate;
+  for (auto _ : state) certificate = CertifyStart(world, {}, pool);
+  state.SetLabel(StartVerdictName(certificate.verdict));
+  state.counters["tried"] = certificate.search.tried;
+}
+BENCHMARK_CAPTURE(StartCertificateOf, book, BookScene())->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(StartCertificateOf, keyboard_at_wall, KeyboardScene(0.01))
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace pregrasp

@@ -34,7 +34,7 @@ std::vector<WrenchContact> SixAxes(double radius) {
 TEST(MarginTest, ItIsTheDistanceToTheNearestFacetOfTheWholeHullThatQhullBuilds) {
   Rng rng(1, RngStream::kTest);
   int compared = 0;
-  while (compared < 150) {
+  while (compared < 60) {
     const std::vector<WrenchContact> contacts = SampleContactSet(rng);
     const double mu = rng.Uniform(0.2, 1.2), scale = rng.Uniform(0.05, 0.2);
     const double margin = CalcMargin(contacts, mu, scale);

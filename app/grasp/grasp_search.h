@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "app/core/thread_pool.h"
+#include "app/grasp/contact_sampler.h"
+#include "app/grasp/feasible_grasp.h"
+
+namespace pregrasp {
+
+struct GraspSearchConfig {
+  /// With 4 restarts of inverse kinematics, not 20: where contact sets abound, the next set is
+  /// worth more than another restart.
+  GraspConfig grasp;
+  SamplerConfig sampler;
+  int max_sets = 100000;  ///< contact sets drawn, about 5 us each
+  int max_solves =
+      1000;  ///< of those, sets that may go on to inverse kinematics: milliseconds each
+  /// Stop when so many grasps are found; what is found in the same group of 16 sets comes along.
+  int max_found = 1;
+  /// Restarts without collision before those with: most sets that pass the forces fail already
+  /// there, at a fraction of the time.
+  int reach_starts = 3;
+
+  GraspSearchConfig() { grasp.kinematics.ik.max_starts = 4; }
+  void Validate() const;
+};
+
+/// How far the drawn sets came.
+struct GraspSearchStats {
+  int drawn = 0;      ///< attempts to draw a set
+  int plausible = 0;  ///< sets drawn
+  int held = 0;       ///< of those, with forces as a grasp needs them
+  int solved = 0;     ///< of those, put to inverse kinematics before the search stopped
+  int reached = 0;    ///< of those, within the hand's reach, collisions aside
+  int feasible = 0;   ///< of those, feasible grasps
+  /// Sets put to the whole test: plausible ones that failed at the forces, and those solved.
+  int tried = 0;
+};
+
+struct GraspSearchResult {
+  std::vector<GraspResult> found;  ///< feasible ones, in the order drawn
+  GraspSearchStats stats;
+};
+
+/// Looks for feasible grasps by drawing contact sets: reach of the tips, then forces, then
+/// kinematics without collision, then the full test. The same result for any number of threads.
+/// @param fixed     contacts that every set must hold: fingers that already press.
+/// @param seed      keys every draw.
+/// @param progress  called between batches with what is done so far; may be empty.
+GraspSearchResult SearchGrasps(const GraspWorld& world, const GraspSearchConfig& config,
+                               const std::vector<GraspContact>& fixed,
+                               const std::vector<RigidTransform>& X_WB, std::uint64_t seed,
+                               ThreadPool& pool,
+                               const std::function<void(const GraspSearchStats&)>& progress = {});
+
+}  // namespace pregrasp

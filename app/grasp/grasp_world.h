@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "app/geometry/signed_distance.h"
+#include "app/grasp/surface_points.h"
+#include "app/grasp/wrench.h"
+#include "app/hand/ik.h"
+#include "app/scene/scene.h"
+
+namespace pregrasp {
+
+/// A fingertip's place on the object, in its frame O: on the true surface, with the outward unit
+/// normal.
+struct GraspContact {
+  Finger finger = Finger::kThumb;
+  Vector3 p_OC = Vector3::Zero();
+  Vector3 nhat_O = Vector3::UnitZ();
+};
+
+/// Where the fingertip sphere's centre is when it touches the contact.
+inline Vector3 TipCentre(const GraspContact& contact) {
+  return contact.p_OC + FingertipRadius(contact.finger) * contact.nhat_O;
+}
+
+/// How near and how far the tip centres of two fingers can be [m], by pairs of Finger.
+struct TipReach {
+  std::array<std::array<double, kNumFingers>, kNumFingers> nearest{}, farthest{};
+};
+
+/// Measured over 30,000 random postures within the joint limits, without the extreme thousandth at
+/// either end.
+TipReach MeasureTipReach(const HandModel& hand);
+
+/// What every test of a grasp in one scene shares, built once. Immutable, safe to share between
+/// threads.
+class GraspWorld {
+ public:
+  /// @param scene  with its shapes loaded.
+  GraspWorld(const Scene& scene, const HandModel& hand, const SurfacePointsConfig& surface = {});
+
+  const Scene& scene() const { return scene_; }
+  const IkSolver& ik() const { return ik_; }
+  const SignedDistance& object() const { return object_; }
+  const EnvironmentDistance& environment() const { return environment_; }
+  const SurfacePoints& surface() const { return surface_; }
+  const TipReach& reach() const { return reach_; }
+  /// The largest distance of the object's surface from its centre of mass [m].
+  double object_radius() const { return object_radius_; }
+
+  /// Every body's pose at the start, in scene order.
+  std::vector<RigidTransform> StartPoses() const;
+
+  /// Contacts for the wrench test: relative to the centre of mass, in O's axes, normals inward.
+  std::vector<WrenchContact> ToWrenchContacts(const std::vector<GraspContact>& contacts) const;
+
+  /// The scene's friction, weight (gravity in O's axes), force cap and radius.
+  WrenchConfig MakeWrenchConfig(double f_min, const Matrix3& R_WO) const;
+
+  /// `contacts` for inverse kinematics with the bodies at X_WB.
+  IkProblem ToIkProblem(const std::vector<GraspContact>& contacts,
+                        const std::vector<RigidTransform>& X_WB) const;
+
+ private:
+  Scene scene_;
+  IkSolver ik_;
+  SignedDistance object_;
+  EnvironmentDistance environment_;
+  SurfacePoints surface_;
+  TipReach reach_;
+  double object_radius_ = 0.0;
+};
+
+}  // namespace pregrasp

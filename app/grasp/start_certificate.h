@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/grasp/balance_proof.h"
+#include "app/grasp/grasp_search.h"
+
+namespace pregrasp {
+
+/// How it is known whether the object can be grasped where it stands.
+enum class StartVerdict {
+  kCertified,  ///< ungraspable: a proof that no fingertips at all can balance the weight
+  kSearched,   ///< ungraspable as far as a search over contact sets can tell
+  kGraspable,  ///< a feasible grasp was found
+};
+/// "certified", "searched", "graspable".
+const char* StartVerdictName(StartVerdict verdict);
+
+struct StartCertificateConfig {
+  /// Of the search; inverse kinematics with IkConfig's 20 restarts. A set counts as within reach
+  /// unless all of them fail without collision too.
+  GraspSearchConfig search;
+  std::uint64_t seed = 1;
+
+  StartCertificateConfig();
+  void Validate() const;
+};
+
+/// The searched verdict means little below so many sets (the project's definition).
+inline constexpr int kLeastTried = 700;
+
+struct StartCertificate {
+  StartVerdict verdict = StartVerdict::kSearched;
+
+  double mu = 0.0;  ///< the scene's fingertip friction, at which the proof was looked for
+  /// FindLeastFriction: the smallest coefficient of a ladder at which the weight could be balanced
+  /// if a hand could be everywhere at once; infinity if at none.
+  double mu_star = 0.0;
+  BalanceProof proof;        ///< valid if certified
+  double proof_slack = 0.0;  ///< CalcProofSlack of it: checked again, by other means
+  int surface_points = 0;    ///< points of the object's surface that were looked at
+  int reachable_points = 0;  ///< of those, where a fingertip can be
+  double spacing = 0.0;      ///< no point of a flat face is farther than this from one of them [m]
+
+  GraspSearchStats search;             ///< zero if certified
+  std::optional<GraspResult> example;  ///< a grasp, if graspable
+};
+
+/// Whether the object is ungraspable at the scene's start: the design's two ways.
+/// First a proof, at all surface points that a fingertip sphere can reach (the smallest sphere, let
+/// into surroundings and object as far as kinematic feasibility would), with circular cones and no
+/// limit on forces. Without a proof, a search of contact sets put to the full test.
+StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateConfig& config,
+                              ThreadPool& pool,
+                              const std::function<void(const GraspSearchStats&)>& progress = {});
+
+/// The contacts that the proof is about.
+std::vector<WrenchContact> FindReachableContacts(const GraspWorld& world,
+                                                 const IkConfig& kinematics,
+                                                 const std::vector<RigidTransform>& X_WB);
+
+}  // namespace pregrasp
