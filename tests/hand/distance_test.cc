@@ -80,7 +80,9 @@ TEST(SegmentDistanceTest, LeastOfAMeshIsThatOfDenseSamples) {
       }
       // Beyond a cutoff only that it is beyond is known.
       const double cutoff = 0.5 * found.sample.phi;
-      if (cutoff > 0.0) EXPECT_GT(FindLeastOnMesh(mesh, s.a, s.b, cutoff).sample.phi, cutoff);
+      if (cutoff > 0.0) {
+        EXPECT_GT(FindLeastOnMesh(mesh, s.a, s.b, cutoff).sample.phi, cutoff);
+      }
     }
   }
   EXPECT_GT(outside, 100);
@@ -181,8 +183,11 @@ TEST(HandDistanceTest, EveryPairNearerThanTheInfluenceIsFoundAndNoOther) {
             found = std::min(found, d.distance);
           }
         }
-        if (sampled > kInfluence + 1e-9 + 4e-4) EXPECT_EQ(found, 1.0);
-        if (sampled < kInfluence) EXPECT_NEAR(found, sampled, sampled < 0.0 ? 2.2e-3 : 4e-4);
+        if (sampled > kInfluence + 4e-4) {
+          EXPECT_EQ(found, 1.0);
+        } else if (sampled < kInfluence) {
+          EXPECT_NEAR(found, sampled, sampled < 0.0 ? 2.2e-3 : 4e-4);
+        }
       }
     }
   }
