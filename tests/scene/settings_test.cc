@@ -1,0 +1,88 @@
+#include "app/scene/settings.h"
+
+#include <gtest/gtest.h>
+
+#include "app/core/error.h"
+
+namespace pregrasp {
+namespace {
+
+Scene MakeScene() {
+  Scene scene;
+  scene.name = "scene";
+  Body object;
+  object.name = "object";
+  object.shape = Box{{0.1, 0.1, 0.1}};
+  object.mass_properties = MassProperties{0.2, Vector3::Zero(), Matrix3::Identity()};
+  Body table;
+  table.name = "table";
+  table.shape = Box{{1, 1, 0.1}};
+  scene.bodies = {object, table};
+  return scene;
+}
+
+void Set(Scene& scene, const std::string& assignment) {
+  std::vector<Setting> settings = {ParseSetting(assignment)};
+  ApplySceneSettings(scene, settings);
+  RequireNoSettingsLeft(settings);
+}
+
+std::string Failure(const std::string& assignment) {
+  Scene scene = MakeScene();
+  try {
+    Set(scene, assignment);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SettingsTest, ChangeTheSceneByKey) {
+  Scene scene = MakeScene();
+  Set(scene, "fingertips.friction=0.05");
+  Set(scene, "environment.table.friction=0.25");
+  Set(scene, "environment.table.p=0,0,-0.05");
+  Set(scene, "object.rpy_deg={0,0,90}");
+  Set(scene, "gravity=0,0,-1.62");
+  EXPECT_EQ(scene.fingertips.friction, 0.05);
+  EXPECT_EQ(scene.bodies[1].friction, 0.25);
+  EXPECT_EQ(scene.bodies[1].X_WB.translation(), Vector3(0, 0, -0.05));
+  EXPECT_NEAR(scene.object().X_WB.linear()(1, 0), 1.0, 1e-15);
+  EXPECT_EQ(scene.gravity, Vector3(0, 0, -1.62));
+}
+
+TEST(SettingsTest, AGivenInertiaFollowsTheMassAndAMassMakesABodyMovable) {
+  Scene scene = MakeScene();
+  Set(scene, "object.mass=0.4");
+  EXPECT_EQ(scene.object().mass_properties->mass, 0.4);
+  EXPECT_EQ(scene.object().mass_properties->I_BBcm(0, 0), 2.0);
+  Set(scene, "environment.table.mass=3");
+  EXPECT_TRUE(scene.bodies[1].movable());
+}
+
+TEST(SettingsTest, WhatIsWrongIsSaidWithTheNearestKey) {
+  EXPECT_EQ(
+      Failure("object.mas=1"),
+      "--set: expected a key that can be set, got \"object.mas\" (did you mean \"object.mass\"?)");
+  EXPECT_EQ(Failure("object.mass=heavy"), "--set: object.mass: expected a number, got \"heavy\"");
+  EXPECT_EQ(Failure("object.mass=1kg"), "--set: object.mass: expected a number, got \"1kg\"");
+  EXPECT_EQ(Failure("gravity=0,0"), "--set: gravity: expected three numbers x,y,z, got \"0,0\"");
+  EXPECT_EQ(Failure("gravity=0,0,1,2"),
+            "--set: gravity: expected three numbers x,y,z, got \"0,0,1,2\"");
+  for (const char* assignment : {"", "=", "object.mass", "object.mass=", "=1"}) {
+    EXPECT_NE(Failure(assignment).find("expected key=value"), std::string::npos) << assignment;
+  }
+}
+
+TEST(SettingsTest, KeysOfOtherStagesAreLeftForThem) {
+  Scene scene = MakeScene();
+  std::vector<Setting> settings = {ParseSetting("mppi.samples=64"), ParseSetting("object.mass=1"),
+                                   ParseSetting("graph.triangles=30")};
+  ApplySceneSettings(scene, settings);
+  ASSERT_EQ(settings.size(), 2U);
+  EXPECT_EQ(settings[0].key, "mppi.samples");
+  EXPECT_THROW(RequireNoSettingsLeft(settings), InputError);
+}
+
+}  // namespace
+}  // namespace pregrasp
