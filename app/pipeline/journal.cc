@@ -1,0 +1,88 @@
+#include "app/pipeline/journal.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace pregrasp {
+namespace {
+
+// One OpenGL context for the whole process.
+Renderer& SharedRenderer() {
+  static Renderer renderer;
+  return renderer;
+}
+
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+RunInfo MakeRunInfo(const World& world, std::uint64_t seed) {
+  RunInfo info;
+  info.seed = seed;
+  info.dt = world.config().dt;
+  return info;
+}
+
+}  // namespace
+
+PictureDrawer::PictureDrawer(std::shared_ptr<const World> world, std::uint64_t seed,
+                             std::string remake)
+    : world_(std::move(world)), seed_(seed), remake_(std::move(remake)) {}
+
+PictureDrawer::~PictureDrawer() = default;
+
+PictureText PictureDrawer::Caption(const JournalStep& step) const {
+  const Scene& scene = world_->scene();
+  PictureText text;
+  text.title = fmt::format("{}   {}   t = {:.2f} s", scene.name, step.record.id, step.record.t);
+  text.lines = step.lines;
+  if (step.shot && !step.shot->caption.empty()) text.lines = {step.shot->caption};
+  text.footer =
+      fmt::format("{} · seed {} · {} · t = {:.3f} s", scene.file.empty() ? scene.name : scene.file,
+                  seed_, step.record.id, step.record.t);
+  if (!remake_.empty()) text.footer += " · again: " + remake_;
+  return text;
+}
+
+void PictureDrawer::Draw(const JournalStep& step, const WorldState& start,
+                         const std::filesystem::path& file) {
+  if (!maker_) maker_ = std::make_unique<PictureMaker>(world_);
+  const PictureConfig config = step.shot ? step.shot->config : PictureConfig{};
+  const RenderScene scene =
+      maker_->Compose(step.state, step.contacts, start, Caption(step), config);
+  WritePng(SharedRenderer().Render(scene, {config.width, config.height, config.quality}), file);
+}
+
+JournalWriter::JournalWriter(const std::filesystem::path& directory, const World& world,
+                             std::uint64_t seed, PictureMode pictures)
+    : run_(directory, world.scene(), MakeRunInfo(world, seed)), pictures_(pictures) {}
+
+void JournalWriter::Write(const JournalStep& step, const WorldState& start, PictureDrawer& drawer) {
+  const bool wanted = pictures_ == PictureMode::kAll ||
+                      (pictures_ == PictureMode::kKey && (step.shot || next_ == 0));
+  if (wanted) {
+    const auto begin = std::chrono::steady_clock::now();
+    drawer.Draw(step, start, run_.NextPicture(step.record.id));
+    picture_seconds_ += SecondsSince(begin);
+  }
+  run_.AddStep(step.record);
+  ++next_;
+}
+
+void JournalWriter::WriteUpToLast(const std::vector<JournalStep>& journal, const WorldState& start,
+                                  PictureDrawer& drawer) {
+  while (next_ + 1 < journal.size()) Write(journal[next_], start, drawer);
+}
+
+void JournalWriter::Finish(const std::vector<JournalStep>& journal, const WorldState& start,
+                           PictureDrawer& drawer, const std::vector<WorldState>& rollout,
+                           const nlohmann::json& summary, const nlohmann::json& configuration) {
+  while (next_ < journal.size()) Write(journal[next_], start, drawer);
+  for (const WorldState& state : rollout) run_.AddRolloutRow(state);
+  nlohmann::json complete = summary;
+  complete["seconds"]["pictures"] = picture_seconds_;
+  run_.Finish(complete, configuration);
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,167 @@
+#include "app/pipeline/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/geometry/tessellate.h"
+#include "app/pipeline/camera.h"
+#include "app/pipeline/finger_stub.h"
+#include "app/pipeline/forces.h"
+#include "app/pipeline/motion_measure.h"
+#include "render/palette.h"
+
+namespace pregrasp {
+namespace {
+
+constexpr double kFocusShare = 0.06;  // of the object's length, around it
+constexpr double kHeadroom = 0.07;    // [m], above it
+constexpr double kGhostAfter = 1e-3;  // [m]
+constexpr double kGhostTurn = 0.01;   // [rad]
+
+MatrixX3 Placed(const MatrixX3& P_B, const RigidTransform& X_WB) {
+  return (P_B * X_WB.linear().transpose()).rowwise() + X_WB.translation().transpose();
+}
+
+void Append(MatrixX3& points, const MatrixX3& more) {
+  points.conservativeResize(points.rows() + more.rows(), 3);
+  points.bottomRows(more.rows()) = more;
+}
+
+}  // namespace
+
+void PictureConfig::Validate() const { RenderConfig{width, height, quality}.Validate(); }
+
+struct PictureMaker::Impl {
+  std::shared_ptr<const World> world;
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;  // one a body
+  Vector3 view_W;          // towards the viewer, in automatic pictures
+  MatrixX3 start_focus_W;  // what they show at least: one camera for a whole strip
+  double metres_per_newton = 0.0;
+
+  RenderCamera ChooseCamera(const PictureConfig& config, const WorldState& state) const;
+  void AddBodies(RenderScene& scene, const WorldState& state, const WorldState& start,
+                 bool ghost) const;
+  void AddFinger(RenderScene& scene, const WorldState& state, Finger finger,
+                 const PictureConfig& config) const;
+  void AddArrow(RenderScene& scene, const Vector3& p_W, bool ends_there, const Vector3& f_W,
+                const Rgba& color, const std::string& name) const;
+};
+
+PictureMaker::PictureMaker(std::shared_ptr<const World> world) : impl_(std::make_unique<Impl>()) {
+  impl_->world = std::move(world);
+  const Scene& scene = impl_->world->scene();
+  for (const Body& body : scene.bodies) {
+    impl_->meshes.push_back(std::make_shared<const TriangleMesh>(Tessellate(body.shape)));
+  }
+  TriangleMesh object_W = *impl_->meshes[0];
+  object_W.V = Placed(object_W.V, scene.object().X_WB);
+  impl_->view_W = ChooseViewDirection(object_W, EnvironmentDistance(scene));
+  impl_->start_focus_W = FocusAround(object_W.V, kFocusShare, kHeadroom);
+  // The forces of a push are a few times the weight, and end at the cap.
+  constexpr double kLongArrow = 0.07;  // [m]
+  const double large =
+      std::min(scene.fingertips.max_force, 2.5 * std::max(scene.object_weight(), 1e-3));
+  impl_->metres_per_newton = kLongArrow / large;
+}
+
+PictureMaker::~PictureMaker() = default;
+
+RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config,
+                                              const WorldState& state) const {
+  const auto& fixed = config.camera ? config.camera : world->scene().camera;
+  if (fixed) return {fixed->p_WCam, fixed->p_WTarget, fixed->fov_deg};
+  MatrixX3 focus_W = start_focus_W;
+  Append(focus_W, Placed(meshes[0]->V, state.bodies[0].X_WB()));
+  return FrameCamera(focus_W, view_W, static_cast<double>(config.width) / config.height);
+}
+
+void PictureMaker::Impl::AddBodies(RenderScene& scene, const WorldState& state,
+                                   const WorldState& start, bool ghost) const {
+  const std::vector<RigidTransform> X_WB = world->GetPoses(state);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    RenderBody body;
+    body.mesh = meshes[i];
+    body.X_WB = X_WB[i];
+    const bool movable = world->scene().bodies[i].movable();
+    const Rgba color = i == 0 ? ObjectColor() : movable ? NeighbourColor() : TableColor();
+    scene.bodies.push_back(WithLook(body, color, movable ? 0.5F : 0.7F));
+  }
+  const Motion motion = CalcObjectMotion(*world, start, state);
+  if (ghost && (motion.moved > kGhostAfter || motion.rotated > kGhostTurn)) {
+    RenderBody body;
+    body.mesh = meshes[0];
+    body.X_WB = start.bodies[0].X_WB();
+    body.color = WithAlpha(ObjectColor(), 0.35F);
+    body.shading = Shading::kGhost;
+    scene.bodies.push_back(body);
+  }
+}
+
+void PictureMaker::Impl::AddArrow(RenderScene& scene, const Vector3& p_W, bool ends_there,
+                                  const Vector3& f_W, const Rgba& color,
+                                  const std::string& name) const {
+  constexpr double kShortest = 0.02, kLongest = 0.10;  // [m]
+  const double force = f_W.norm();
+  if (force < 1e-3) return;
+  const double length = std::clamp(metres_per_newton * force, kShortest, kLongest);
+  const Vector3 v_W = f_W * (length / force);
+  const Vector3 tail_W = ends_there ? Vector3(p_W - v_W) : p_W;
+  scene.arrows.push_back({tail_W, v_W, 0.0016F, color});
+  scene.labels.push_back({tail_W, fmt::format("{} {:.2f} N", name, force), color});
+}
+
+void PictureMaker::Impl::AddFinger(RenderScene& scene, const WorldState& state, Finger finger,
+                                   const PictureConfig& config) const {
+  const FingertipState& tip = state.fingers[static_cast<int>(finger)];
+  if (!tip.on) return;
+  const Vector3 nhat_W = state.bodies[0].q_WB * tip.nhat_O;
+  const Vector3 to_viewer_W = (scene.camera.p_WCam - tip.p_WF).normalized();
+  if (config.fingers) {
+    for (RenderBody& body : MakeFingerStub(finger, tip.p_WF, nhat_W, to_viewer_W)) {
+      scene.bodies.push_back(std::move(body));
+    }
+  }
+  if (config.cones && tip.touching) {
+    RenderCone cone;
+    cone.p_W = tip.p_WF;
+    cone.axis_W = 0.035 * nhat_W;
+    cone.half_angle = static_cast<float>(std::atan(world->scene().fingertips.friction));
+    cone.color = WithAlpha(tip.slipping ? BadColor() : GoodColor(), 0.22F);
+    scene.cones.push_back(cone);
+  }
+  if (config.forces) {
+    AddArrow(scene, tip.p_WF, true, tip.f_W, FingerColor(finger), FingerName(finger));
+  }
+}
+
+RenderScene PictureMaker::Compose(const WorldState& state,
+                                  const std::vector<ContactPoint>& contacts,
+                                  const WorldState& start, const PictureText& text,
+                                  const PictureConfig& config) const {
+  config.Validate();
+  RenderScene scene;
+  scene.camera = impl_->ChooseCamera(config, state);
+  impl_->AddBodies(scene, state, start, config.ghost);
+  for (int i = 0; i < kNumFingers; ++i) {
+    impl_->AddFinger(scene, state, static_cast<Finger>(i), config);
+  }
+  if (config.contacts) {
+    for (const ContactPoint& contact : contacts) {
+      if (contact.body_a != 0 || contact.f_W.norm() < 1e-3) continue;
+      scene.points.push_back({contact.p_WC, 0.0022F, NeutralColor()});
+    }
+  }
+  if (config.forces) {
+    const Body& object = impl_->world->scene().object();
+    const Vector3 p_WBcm = state.bodies[0].X_WB() * object.mass_properties->p_BoBcm;
+    const Vector3 weight_W = object.mass_properties->mass * impl_->world->scene().gravity;
+    impl_->AddArrow(scene, p_WBcm, false, weight_W, NeutralColor(), "weight");
+  }
+  scene.axes = config.axes;
+  scene.caption = {text.title, text.lines, text.footer, -1.0};
+  return scene;
+}
+
+}  // namespace pregrasp

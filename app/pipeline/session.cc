@@ -1,0 +1,291 @@
+#include "app/pipeline/session.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/geometry/overlap.h"
+#include "app/pipeline/describe.h"
+
+namespace pregrasp {
+namespace {
+
+nlohmann::json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+std::shared_ptr<const World> BuildWorld(Scene scene) {
+  const std::vector<Overlap> overlaps = FindOverlaps(scene);
+  if (!overlaps.empty()) {
+    const Overlap& deepest = overlaps.front();
+    const Body& a = scene.bodies[deepest.body_a];
+    const Body& b = scene.bodies[deepest.body_b];
+    throw InputError(a.where, a.name, "bodies that do not overlap",
+                     fmt::format("{:.3g} mm of overlap with \"{}\"", 1e3 * deepest.depth, b.name));
+  }
+  return std::make_shared<const World>(scene);
+}
+
+double PeakMegabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+}  // namespace
+
+Session::Session(Scene scene, const SessionConfig& config)
+    : config_(config), world_(BuildWorld(std::move(scene))), start_(world_->InitialState()) {
+  drawer_ = std::make_unique<PictureDrawer>(world_, config_.seed, config_.remake);
+  JournalStep step = MakeStep(start_id_, "scene", start_, {});
+  step.lines = DescribeScene(this->scene());
+  journal_.push_back(std::move(step));
+}
+
+Session::~Session() = default;
+
+ThreadPool& Session::pool() {
+  if (!pool_) pool_ = std::make_unique<ThreadPool>(config_.threads);
+  return *pool_;
+}
+
+const EnvironmentDistance& Session::environment() {
+  if (!environment_) environment_ = std::make_unique<EnvironmentDistance>(scene());
+  return *environment_;
+}
+
+JournalStep Session::MakeStep(const std::string& id, const std::string& stage,
+                              const WorldState& state,
+                              const std::vector<ContactPoint>& contacts) const {
+  JournalStep step;
+  step.record.id = id;
+  step.record.stage = stage;
+  step.record.t = state.t;
+  for (int i = 0; i < world_->num_movables(); ++i) {
+    step.record.bodies.push_back(
+        {scene().bodies[world_->body_index(i)].name, state.bodies[i].X_WB()});
+  }
+  for (int i = 0; i < kNumPlanningFingers; ++i) {
+    const FingertipState& tip = state.fingers[i];
+    step.record.fingers.push_back(
+        {static_cast<Finger>(i), tip.on, tip.p_OC, tip.p_WTarget, tip.f_W});
+  }
+  step.state = state;
+  step.contacts = contacts;
+  return step;
+}
+
+void Session::Append(JournalStep step) {
+  journal_.push_back(std::move(step));
+  if (recorder_) recorder_->WriteUpToLast(journal_, start_, *drawer_);
+}
+
+SettleResult Session::Settle(double seconds) {
+  if (num_actions_ > 0) {
+    throw InputError("", "", "to settle before anything is simulated", "a simulation");
+  }
+  if (!(seconds > 0.0 && seconds <= Simulation::kMaxSeconds)) {
+    throw InputError("", "seconds",
+                     fmt::format("above 0 and at most {} s", Simulation::kMaxSeconds),
+                     fmt::format("{}", seconds));
+  }
+  const WorldState before = start_;
+  const SettleResult result = pregrasp::Settle(*world_, start_, seconds);
+  start_.t = 0.0;
+  start_.step = 0;
+  start_id_ = "scene.settle";
+  JournalStep step = MakeStep(start_id_, "scene", start_, {});
+  step.record.details = {{"action", "settle"},
+                         {"seconds", seconds},
+                         {"moved_mm", 1e3 * result.largest.moved},
+                         {"rotated_deg", RadToDeg(result.largest.rotated)},
+                         {"at_rest", result.at_rest}};
+  step.lines = {fmt::format("Left alone for {:.3g} s, the {} {}.", seconds, scene().object().name,
+                            result.at_rest ? "stays at rest" : "does not stay at rest"),
+                fmt::format("moved\t{:.4f} mm", 1e3 * result.largest.moved),
+                fmt::format("turned\t{:.4f} deg", RadToDeg(result.largest.rotated))};
+  Append(std::move(step));
+  return result;
+}
+
+std::shared_ptr<Simulation> Session::Simulate() {
+  return std::make_shared<Simulation>(world_, start_, start_id_);
+}
+
+void Session::Act(const std::shared_ptr<Simulation>& simulation, const std::string& what,
+                  nlohmann::json details, const std::function<void()>& action) {
+  const WorldState before = simulation->state();
+  const std::string id = fmt::format("sim.{}", num_actions_ + 1);
+  simulation->BeginAction(id);
+  const auto add_step = [&] {
+    ++num_actions_;
+    last_ = simulation;
+    const WorldState& after = simulation->state();
+    JournalStep step = MakeStep(id, "sim", after, simulation->contacts());
+    const Motion motion = CalcObjectMotion(*world_, before, after);
+    details["what"] = what;
+    details["moved_mm"] = 1e3 * motion.moved;
+    details["rotated_deg"] = RadToDeg(motion.rotated);
+    step.record.details = std::move(details);
+    step.lines = DescribeStep(*world_, before, after, simulation->contacts());
+    step.lines.insert(step.lines.begin(), what);
+    Append(std::move(step));
+  };
+  try {
+    action();
+  } catch (const Interrupted&) {
+    details["interrupted"] = true;
+    add_step();
+    throw;
+  }
+  add_step();
+}
+
+void Session::Touch(const std::shared_ptr<Simulation>& simulation, Finger finger,
+                    const Vector3& p_OC) {
+  Simulation tried = *simulation;  // where the finger lands is known only when it has
+  tried.Touch(finger, p_OC);
+  const Vector3 landed = tried.state().fingers[static_cast<int>(finger)].p_OC;
+  Act(simulation,
+      fmt::format("The {} touches the {} at {}.", FingerName(finger), scene().object().name,
+                  FormatMillimetres(landed)),
+      {{"action", "touch"}, {"finger", FingerName(finger)}, {"p_OC", ToJson(landed)}},
+      [&] { simulation->Touch(finger, p_OC); });
+}
+
+void Session::Lift(const std::shared_ptr<Simulation>& simulation, Finger finger) {
+  Act(simulation, fmt::format("The {} lifts off.", FingerName(finger)),
+      {{"action", "lift"}, {"finger", FingerName(finger)}}, [&] { simulation->Lift(finger); });
+}
+
+void Session::Move(const std::shared_ptr<Simulation>& simulation, Finger finger,
+                   const Vector3& p_WTarget, double seconds) {
+  const Vector3 by = p_WTarget - simulation->state().fingers[static_cast<int>(finger)].p_WTarget;
+  Act(simulation,
+      fmt::format("The {}'s target moves by {} in {:.3g} s.", FingerName(finger),
+                  FormatMillimetres(by), seconds),
+      {{"action", "move"},
+       {"finger", FingerName(finger)},
+       {"p_WTarget", ToJson(p_WTarget)},
+       {"seconds", seconds}},
+      [&] { simulation->Move(finger, p_WTarget, seconds); });
+}
+
+void Session::Wait(const std::shared_ptr<Simulation>& simulation, double seconds) {
+  Act(simulation, fmt::format("{:.3g} s pass.", seconds),
+      {{"action", "wait"}, {"seconds", seconds}},
+      [&] { simulation->Step(simulation->StepsIn(seconds)); });
+}
+
+void Session::Step(const std::shared_ptr<Simulation>& simulation, int steps) {
+  Act(simulation, fmt::format("{} physics steps.", steps), {{"action", "step"}, {"steps", steps}},
+      [&] { simulation->Step(steps); });
+}
+
+JournalStep Session::StepOf(const Simulation& simulation) const {
+  JournalStep step =
+      MakeStep(simulation.step_id(), "sim", simulation.state(), simulation.contacts());
+  step.record.details = {{"action", "shot"}};
+  step.lines = DescribeStep(*world_, start_, simulation.state(), simulation.contacts());
+  return step;
+}
+
+namespace {
+
+// Whether the journal's step shows the simulation as it is now.
+bool Shows(const JournalStep& step, const Simulation& simulation) {
+  return step.record.id == simulation.step_id() && step.state.step == simulation.state().step;
+}
+
+}  // namespace
+
+void Session::Shoot(const Simulation* simulation, const PictureConfig& config,
+                    const std::string& caption) {
+  config.Validate();
+  if (journal_.back().shot || (simulation != nullptr && !Shows(journal_.back(), *simulation))) {
+    JournalStep again = simulation != nullptr && !Shows(journal_.back(), *simulation)
+                            ? StepOf(*simulation)
+                            : journal_.back();
+    again.shot.reset();
+    Append(std::move(again));
+  }
+  journal_.back().shot = JournalStep::Shot{config, caption};
+}
+
+void Session::ShootToFile(const Simulation* simulation, const PictureConfig& config,
+                          const std::string& caption, const std::filesystem::path& file) {
+  config.Validate();
+  JournalStep step = simulation != nullptr && !Shows(journal_.back(), *simulation)
+                         ? StepOf(*simulation)
+                         : journal_.back();
+  step.shot = JournalStep::Shot{config, caption};
+  if (config_.pictures == PictureMode::kNone) return;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  drawer_->Draw(step, start_, file);
+}
+
+std::unique_ptr<JournalWriter> Session::OpenWriter(const std::filesystem::path& directory,
+                                                   PictureMode pictures) {
+  return std::make_unique<JournalWriter>(directory, *world_, config_.seed,
+                                         config_.pictures.value_or(pictures));
+}
+
+void Session::Record(const std::filesystem::path& directory, PictureMode pictures) {
+  if (recorder_) {
+    throw InputError("", "dir", "one recording at a time",
+                     "a second one, while " + recorder_->directory().string() + " is open");
+  }
+  recorder_ = OpenWriter(directory, pictures);
+  recorder_->WriteUpToLast(journal_, start_, *drawer_);
+}
+
+void Session::Finish(JournalWriter& writer, const std::optional<std::string>& status) {
+  std::vector<WorldState> rollout;
+  if (last_) {
+    for (int i = 0; i < last_->num_states(); ++i) rollout.push_back(last_->state_at(i));
+  } else {
+    rollout.push_back(start_);
+  }
+  const Motion motion = CalcObjectMotion(*world_, rollout.front(), rollout.back());
+  double max_speed = 0.0;
+  for (const WorldState& state : rollout) {
+    max_speed = std::max(max_speed, state.bodies[0].v_WB.norm());
+  }
+  nlohmann::json summary = {{"object_motion",
+                             {{"translation_m", motion.moved},
+                              {"rotation_deg", RadToDeg(motion.rotated)},
+                              {"max_speed", max_speed}}},
+                            {"peak_rss_mb", PeakMegabytes()}};
+  if (status) summary["status"] = *status;
+  const StepConfig& step = world_->config();
+  const nlohmann::json configuration = {{"dynamics",
+                                         {{"dt", step.dt},
+                                          {"tolerance", step.tolerance},
+                                          {"max_sweeps", step.max_sweeps},
+                                          {"max_sweeps_many", step.max_sweeps_many},
+                                          {"margin", step.margin},
+                                          {"restitution", step.restitution}}}};
+  writer.Finish(journal_, start_, *drawer_, rollout, summary, configuration);
+}
+
+std::filesystem::path Session::Save(const std::optional<std::filesystem::path>& directory) {
+  if (recorder_ && (!directory || *directory == recorder_->directory())) {
+    const std::filesystem::path where = recorder_->directory();
+    FinishRecording();
+    return where;
+  }
+  if (!directory) throw InputError("", "dir", "a folder, as nothing is recorded", "nothing");
+  const std::unique_ptr<JournalWriter> writer = OpenWriter(*directory, PictureMode::kKey);
+  Finish(*writer, std::nullopt);
+  return *directory;
+}
+
+void Session::FinishRecording(const std::optional<std::string>& status) {
+  if (!recorder_) return;
+  const std::unique_ptr<JournalWriter> recorder = std::move(recorder_);
+  Finish(*recorder, status);
+}
+
+}  // namespace pregrasp

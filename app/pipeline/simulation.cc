@@ -1,0 +1,90 @@
+#include "app/pipeline/simulation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/core/text.h"
+
+namespace pregrasp {
+
+Simulation::Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id)
+    : world_(std::move(world)), action_id_(std::move(step_id)) {
+  past_.push_back(std::make_shared<const Moment>(Moment{std::move(start), {}, action_id_}));
+}
+
+void Simulation::ReplaceState(WorldState state) {
+  past_.back() =
+      std::make_shared<const Moment>(Moment{std::move(state), past_.back()->contacts, action_id_});
+}
+
+void Simulation::StepOnce(WorldState state) {
+  ThrowIfInterrupted();
+  Moment next{std::move(state), {}, action_id_};
+  world_->Step(next.state, &next.contacts);
+  past_.push_back(std::make_shared<const Moment>(std::move(next)));
+}
+
+void Simulation::RequireRoom(int steps) const {
+  const double seconds = (past_.size() + static_cast<double>(steps)) * world_->config().dt;
+  if (seconds > kMaxSeconds) {
+    throw InputError("", "seconds", fmt::format("at most {} s in one simulation", kMaxSeconds),
+                     fmt::format("{:.6g} s", seconds));
+  }
+}
+
+int Simulation::StepsIn(double seconds) const {
+  if (!(seconds >= 0.0 && seconds <= kMaxSeconds)) {
+    throw InputError("", "seconds", fmt::format("0 to {} s", kMaxSeconds), FormatDouble(seconds));
+  }
+  return static_cast<int>(std::lround(seconds / world_->config().dt));
+}
+
+void Simulation::Touch(Finger finger, const Vector3& p_OC) {
+  WorldState touched = state();
+  world_->PutFinger(touched, finger, p_OC);
+  ReplaceState(std::move(touched));
+}
+
+void Simulation::Lift(Finger finger) {
+  WorldState lifted = state();
+  world_->LiftFinger(lifted, finger);
+  ReplaceState(std::move(lifted));
+}
+
+void Simulation::Move(Finger finger, const Vector3& p_WTarget, double seconds) {
+  const int index = static_cast<int>(finger);
+  if (!state().fingers[index].on) {
+    throw InputError("", "finger", "a finger that touches",
+                     fmt::format("\"{}\", which is off", FingerName(finger)));
+  }
+  if (!(seconds > 0.0)) {
+    throw InputError("", "seconds", "a time above 0 s", FormatDouble(seconds));
+  }
+  const int steps = std::max(1, StepsIn(seconds));
+  RequireRoom(steps);
+  const Vector3 from = state().fingers[index].p_WTarget;
+  for (int i = 1; i <= steps; ++i) {
+    WorldState next = state();
+    next.fingers[index].p_WTarget = from + (p_WTarget - from) * (static_cast<double>(i) / steps);
+    StepOnce(std::move(next));
+  }
+}
+
+void Simulation::Step(int steps) {
+  if (steps < 0) throw InputError("", "steps", "a count of at least 0", std::to_string(steps));
+  RequireRoom(steps);
+  for (int i = 0; i < steps; ++i) StepOnce(state());
+}
+
+void Simulation::Back(int steps) {
+  if (steps < 0 || steps >= num_states()) {
+    throw InputError("", "steps", fmt::format("0 to {} steps", num_states() - 1),
+                     std::to_string(steps));
+  }
+  past_.resize(past_.size() - steps);
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/dynamics/world.h"
+
+namespace pregrasp {
+
+/// A world stepped by hand, with its past: a copyable value, so that a copy is a fork. Copies share
+/// the past and the world.
+class Simulation {
+ public:
+  /// The longest past that is kept [s]; about 3 kB a step.
+  static constexpr double kMaxSeconds = 300.0;
+
+  Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id);
+
+  const World& world() const { return *world_; }
+  const WorldState& state() const { return past_.back()->state; }
+  /// The contact points of the step that led here; none at the start.
+  const std::vector<ContactPoint>& contacts() const { return past_.back()->contacts; }
+  /// Every physics step from the start to now, the start included.
+  int num_states() const { return static_cast<int>(past_.size()); }
+  const WorldState& state_at(int index) const { return past_[index]->state; }
+
+  /// The id of the action that led here, or of where it began.
+  const std::string& step_id() const { return past_.back()->step_id; }
+  /// What follows belongs to the action of this id.
+  void BeginAction(const std::string& step_id) { action_id_ = step_id; }
+
+  /// Puts a finger on the object at the surface point nearest to p_OC, without force yet.
+  void Touch(Finger finger, const Vector3& p_OC);
+  void Lift(Finger finger);
+
+  /// Moves where the finger's spring pulls, evenly over `seconds`, to p_WTarget.
+  /// @throws InputError if the finger is off, or seconds are not above 0; Interrupted, as Step.
+  void Move(Finger finger, const Vector3& p_WTarget, double seconds);
+
+  /// Physics steps with the targets where they are.
+  /// @throws InputError below 0 or beyond kMaxSeconds; Interrupted, with what was stepped kept.
+  void Step(int steps);
+
+  /// As many steps as `seconds` take, rounded.
+  int StepsIn(double seconds) const;
+
+  /// Takes physics steps back, exactly. @throws InputError when there are fewer.
+  void Back(int steps);
+
+ private:
+  struct Moment {
+    WorldState state;
+    std::vector<ContactPoint> contacts;
+    std::string step_id;
+  };
+
+  void StepOnce(WorldState state);
+  void ReplaceState(WorldState state);
+  void RequireRoom(int steps) const;
+
+  std::shared_ptr<const World> world_;
+  std::vector<std::shared_ptr<const Moment>> past_;
+  std::string action_id_;
+};
+
+}  // namespace pregrasp

@@ -1,0 +1,126 @@
+#include "app/pipeline/picture.h"
+
+#include <gtest/gtest.h>
+
+#include "app/core/error.h"
+#include "app/geometry/tessellate.h"
+#include "app/pipeline/camera.h"
+#include "app/pipeline/describe.h"
+#include "app/pipeline/simulation.h"
+#include "tests/pipeline/fixture.h"
+
+namespace pregrasp {
+namespace {
+
+// The ruler, pressed and pulled.
+Simulation MakePulled(const std::shared_ptr<const World>& world) {
+  Simulation sim(world, world->InitialState(), "scene.start");
+  sim.Touch(Finger::kIndex, {0.11, 0, 0.0015});
+  const Vector3 start = sim.state().fingers[1].p_WTarget;
+  sim.Move(Finger::kIndex, start - Vector3(0, 0, 0.012), 0.25);
+  sim.Move(Finger::kIndex, start + Vector3(0.03, 0, -0.012), 0.75);
+  return sim;
+}
+
+// Whether a world point lies within the picture.
+bool InSight(const RenderCamera& camera, const Vector3& p_W, double aspect) {
+  const Vector3 forward = (camera.p_WTarget - camera.p_WCam).normalized();
+  const Vector3 right = forward.cross(Vector3::UnitZ()).normalized();
+  const Vector3 up = right.cross(forward);
+  const Vector3 d = p_W - camera.p_WCam;
+  const double half = std::tan(0.5 * DegToRad(camera.fov_deg)) * d.dot(forward);
+  return d.dot(forward) > 0 && std::abs(d.dot(up)) < half && std::abs(d.dot(right)) < half * aspect;
+}
+
+TEST(PictureMakerTest, ShowsEveryBodyTheFingerItsForceAndWhereTheObjectWas) {
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  const Simulation sim = MakePulled(world);
+  const PictureMaker maker(world);
+  const RenderScene scene =
+      maker.Compose(sim.state(), sim.contacts(), world->InitialState(), {}, {});
+  ASSERT_EQ(scene.bodies.size(), 2U + 1U + 3U);  // ruler, table; ghost; tip and two links
+  EXPECT_EQ(scene.bodies[2].shading, Shading::kGhost);
+  EXPECT_EQ(scene.bodies[2].mesh, scene.bodies[0].mesh);
+  EXPECT_EQ(scene.cones.size(), 1U);
+  ASSERT_EQ(scene.arrows.size(), 2U);  // finger and weight
+  // The force's arrow ends at the contact, and the fingertip touches there from outside.
+  const Vector3 p_WF = sim.state().fingers[1].p_WF;
+  EXPECT_LT((scene.arrows[0].p_W + scene.arrows[0].v_W - p_WF).norm(), 1e-12);
+  const double radius = FingertipRadius(Finger::kIndex);
+  EXPECT_NEAR((scene.bodies[3].X_WB.translation() - p_WF).norm(), radius, 1e-12);
+  ASSERT_EQ(scene.labels.size(), 2U);
+  EXPECT_EQ(scene.labels[0].text.find("index 0."), 0U) << scene.labels[0].text;
+  EXPECT_EQ(scene.labels[1].text, "weight 0.25 N");
+}
+
+TEST(PictureMakerTest, OverlaysCanBeLeftOut) {
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  const Simulation sim = MakePulled(world);
+  PictureConfig config;
+  config.forces = config.cones = config.contacts = config.ghost = config.fingers = config.axes =
+      false;
+  const RenderScene scene =
+      PictureMaker(world).Compose(sim.state(), sim.contacts(), world->InitialState(), {}, config);
+  EXPECT_EQ(scene.bodies.size(), 2U);
+  EXPECT_TRUE(scene.arrows.empty() && scene.cones.empty() && scene.points.empty());
+  EXPECT_TRUE(scene.labels.empty());
+  EXPECT_FALSE(scene.axes);
+  config.width = 2;
+  EXPECT_THROW(config.Validate(), InputError);
+}
+
+TEST(PictureMakerTest, TheAutomaticCameraHasTheObjectInSightWhereverItIs) {
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  const PictureMaker maker(world);
+  for (const double x : {-0.3, -0.16, 0.0, 0.5}) {
+    WorldState state = world->InitialState();
+    state.bodies[0].p_WB.x() = x;
+    const RenderScene scene = maker.Compose(state, {}, world->InitialState(), {}, {});
+    for (const double end : {-0.15, 0.15}) {
+      EXPECT_TRUE(InSight(scene.camera, {x + end, 0, 0}, 1280.0 / 720.0)) << x;
+    }
+  }
+}
+
+TEST(ChooseViewDirectionTest, LooksWhereNothingIsInTheWay) {
+  // A wall close in front, where the preferred view would look from.
+  Scene scene = MakeRulerScene();
+  Body wall;
+  wall.name = "wall";
+  wall.shape = Box{{0.8, 0.02, 0.6}};
+  wall.X_WB.translation() = Vector3(-0.4, -0.05, 0.3);
+  const TriangleMesh ruler = Tessellate(scene.object().shape);
+  TriangleMesh ruler_W = ruler;
+  ruler_W.V.rowwise() += scene.object().X_WB.translation().transpose();
+  EXPECT_LT(ChooseViewDirection(ruler_W, EnvironmentDistance(scene)).y(), 0.0);
+  scene.bodies.push_back(wall);
+  EXPECT_GT(ChooseViewDirection(ruler_W, EnvironmentDistance(scene)).y(), 0.0);
+}
+
+TEST(DescribeStepTest, SaysWhatDecidedTheMotion) {
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  const Simulation sim = MakePulled(world);
+  const auto lines = DescribeStep(*world, world->InitialState(), sim.state(), sim.contacts());
+  EXPECT_EQ(lines[0].find("The index sticks to the ruler and takes it along: that needs 0."), 0U)
+      << lines[0];
+  EXPECT_EQ(lines[1].find("ruler moved\t2"), 0U) << lines[1];
+  const auto still = DescribeStep(*world, world->InitialState(), world->InitialState(), {});
+  EXPECT_EQ(still[0], "Nothing touches the ruler and it stays at rest.");
+}
+
+TEST(DescribeStepTest, ALightTouchSlidesOverTheRuler) {
+  // Pressed too lightly (0.05 N), the finger cannot overcome the table.
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  Simulation sim(world, world->InitialState(), "scene.start");
+  sim.Touch(Finger::kIndex, {0.05, 0, 0.0015});
+  const Vector3 start = sim.state().fingers[1].p_WTarget;
+  sim.Move(Finger::kIndex, start - Vector3(0, 0, 0.001), 0.25);
+  const WorldState before = sim.state();
+  sim.Move(Finger::kIndex, start + Vector3(0.03, 0, -0.001), 0.75);
+  const auto lines = DescribeStep(*world, before, sim.state(), sim.contacts());
+  EXPECT_EQ(lines[0].find("The index slides "), 0U) << lines[0];
+  EXPECT_NE(lines[0].find("over the ruler, which stays."), std::string::npos) << lines[0];
+}
+
+}  // namespace
+}  // namespace pregrasp

@@ -1,0 +1,108 @@
+#include "app/pipeline/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/pipeline/forces.h"
+#include "app/pipeline/motion_measure.h"
+#include "tests/pipeline/fixture.h"
+
+namespace pregrasp {
+namespace {
+
+Simulation MakeSimulation() {
+  auto world = std::make_shared<const World>(MakeRulerScene());
+  return {world, world->InitialState(), "scene.start"};
+}
+
+bool SameState(const WorldState& a, const WorldState& b) {
+  return a.step == b.step && a.t == b.t && a.bodies[0].p_WB == b.bodies[0].p_WB &&
+         a.bodies[0].q_WB.coeffs() == b.bodies[0].q_WB.coeffs() &&
+         a.bodies[0].v_WB == b.bodies[0].v_WB && a.fingers[1].p_WTarget == b.fingers[1].p_WTarget &&
+         a.fingers[1].f_W == b.fingers[1].f_W;
+}
+
+TEST(SimulationTest, GoingBackAndOnAgainGivesTheSameStates) {
+  Simulation sim = MakeSimulation();
+  sim.Touch(Finger::kIndex, {0.11, 0, 0.0015});
+  sim.Move(Finger::kIndex, sim.state().fingers[1].p_WTarget - Vector3(0, 0, 0.012), 0.25);
+  const Simulation before = sim;
+  const Vector3 target = sim.state().fingers[1].p_WTarget + Vector3(0.02, 0, 0);
+  sim.Move(Finger::kIndex, target, 0.5);
+  const WorldState after = sim.state();
+  sim.Back(120);
+  EXPECT_TRUE(SameState(sim.state(), before.state()));
+  sim.Move(Finger::kIndex, target, 0.5);
+  EXPECT_TRUE(SameState(sim.state(), after));
+}
+
+TEST(SimulationTest, AForkDoesNotChangeWhereItCameFrom) {
+  Simulation sim = MakeSimulation();
+  Simulation fork = sim;
+  fork.Touch(Finger::kThumb, {0, 0, 0.0015});
+  fork.Step(10);
+  EXPECT_EQ(sim.num_states(), 1);
+  EXPECT_FALSE(sim.state().fingers[0].on);
+  EXPECT_EQ(fork.num_states(), 11);
+}
+
+TEST(SimulationTest, PressedPulledRulerObeysTheSpringAndTheCone) {
+  Simulation sim = MakeSimulation();
+  const World& world = sim.world();
+  sim.Touch(Finger::kIndex, {0.11, 0, 0.0015});
+  const Vector3 start = sim.state().fingers[1].p_WTarget;
+  sim.Move(Finger::kIndex, start - Vector3(0, 0, 0.012), 0.5);
+  sim.Step(120);
+  // At rest the spring's 12 mm give 0.6 N; the table carries that and the weight.
+  ForceSplit split = SplitFingerForce(world, sim.state(), Finger::kIndex);
+  EXPECT_NEAR(split.normal, 50.0 * 0.012, 1e-3);
+  EXPECT_NEAR(split.limit, 0.8 * split.normal, 1e-12);
+  std::vector<SupportForce> supports = CalcSupportForces(world, sim.contacts());
+  ASSERT_EQ(supports.size(), 1U);
+  EXPECT_EQ(supports[0].body, 1);
+  EXPECT_NEAR(supports[0].f_W.z(), 0.6 + 0.025 * 9.81, 1e-3);
+  // Pulled, it follows: the table gives way at 0.3 of what it carries, the fingertip holds.
+  const WorldState before = sim.state();
+  sim.Move(Finger::kIndex, start + Vector3(0.05, 0, -0.012), 1.5);
+  const Motion motion = CalcObjectMotion(world, before, sim.state());
+  EXPECT_GT(motion.moved, 0.040);
+  EXPECT_LT(motion.moved, 0.050);
+  split = SplitFingerForce(world, sim.state(), Finger::kIndex);
+  EXPECT_LT(split.tangential, split.limit);
+  supports = CalcSupportForces(world, sim.contacts());
+  EXPECT_TRUE(supports.at(0).slipping);
+  EXPECT_NEAR(supports[0].split.tangential, 0.3 * supports[0].split.normal, 1e-3);
+}
+
+TEST(SimulationTest, RefusesWhatMakesNoSense) {
+  Simulation sim = MakeSimulation();
+  EXPECT_THROW(sim.Move(Finger::kIndex, Vector3::Zero(), 1.0), InputError);  // it is off
+  EXPECT_THROW(sim.Back(1), InputError);
+  EXPECT_THROW(sim.Step(-1), InputError);
+  EXPECT_THROW(sim.Step(1 << 30), InputError);
+  EXPECT_THROW(sim.StepsIn(-1.0), InputError);
+  sim.Touch(Finger::kIndex, {0, 0, 0.0015});
+  EXPECT_THROW(sim.Move(Finger::kIndex, Vector3::Zero(), 0.0), InputError);
+}
+
+TEST(SimulationTest, AnInterruptKeepsWhatWasStepped) {
+  Simulation sim = MakeSimulation();
+  sim.Step(5);
+  RequestInterrupt();
+  EXPECT_THROW(sim.Step(5), Interrupted);
+  ClearInterrupt();
+  EXPECT_EQ(sim.num_states(), 6);
+  EXPECT_NO_THROW(sim.Step(5));
+}
+
+TEST(SettleTest, TheRulerStaysAtRest) {
+  const World world(MakeRulerScene());
+  WorldState state = world.InitialState();
+  const SettleResult result = Settle(world, state, 1.0);
+  EXPECT_TRUE(result.at_rest);
+  EXPECT_LT(result.largest.moved, 1e-6);
+}
+
+}  // namespace
+}  // namespace pregrasp
