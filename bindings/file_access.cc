@@ -12,9 +12,11 @@ namespace {
 namespace fs = std::filesystem;
 
 bool IsBelow(const fs::path& path, const fs::path& folder) {
-  std::error_code ignored;
-  const fs::path real_path = fs::weakly_canonical(fs::absolute(path), ignored);
-  const fs::path real_folder = fs::weakly_canonical(fs::absolute(folder), ignored);
+  std::error_code error;
+  const fs::path real_path = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (error) return false;  // such as a loop of links
+  const fs::path real_folder = fs::weakly_canonical(fs::absolute(folder, error), error);
+  if (error) return false;
   const auto [rest, end] =
       std::mismatch(real_folder.begin(), real_folder.end(), real_path.begin(), real_path.end());
   return rest == real_folder.end() || (rest->empty() && std::next(rest) == real_folder.end());
@@ -37,6 +39,8 @@ void FileAccess::AllowReadsBelow(const fs::path& folder) {
 }
 
 fs::path FileAccess::FindForReading(const std::string& name) const {
+  if (name.find('\0') != std::string::npos)
+    throw InputError("", "", "a file's name", "a zero byte");
   fs::path found = name;
   if (found.is_relative()) {
     for (const fs::path& folder : readable_) {
@@ -64,7 +68,7 @@ fs::path FileAccess::ResolveForWriting(const std::string& name) const {
   if (normal.is_relative() && normal.begin() != normal.end() && *normal.begin() == "out") {
     resolved = (output_ / normal.lexically_relative("out")).lexically_normal();
   }
-  if (!IsBelow(resolved, output_)) {
+  if (name.find('\0') != std::string::npos || !IsBelow(resolved, output_)) {
     throw InputError(name, "", "a path in the output folder (\"out/..\")", "one elsewhere");
   }
   return resolved;

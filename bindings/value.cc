@@ -87,11 +87,11 @@ std::string LuaValue<std::string>::Read(lua_State* L, int index, const std::stri
 Finger LuaValue<Finger>::Read(lua_State* L, int index, const std::string& path) {
   if (lua_type(L, index) == LUA_TSTRING) {
     const std::string name = lua_tostring(L, index);
-    for (int i = 0; i < kNumPlanningFingers; ++i) {
+    for (int i = 0; i < kNumFingers; ++i) {
       if (name == kFingerNames[i]) return static_cast<Finger>(i);
     }
   }
-  Refuse(L, index, path, "\"thumb\" or \"index\"");
+  Refuse(L, index, path, "a finger (thumb, index, middle, ring or little)");
 }
 
 int CheckList(lua_State* L, int index, const std::string& path, const std::string& expected) {

@@ -57,7 +57,7 @@ struct LuaValue<std::string> {
 };
 
 template <>
-struct LuaValue<Finger> {  // by name; the planner's two
+struct LuaValue<Finger> {  // by name
   static Finger Read(lua_State* L, int index, const std::string& path);
   static void Push(lua_State* L, Finger finger) { lua_pushstring(L, FingerName(finger)); }
 };

@@ -42,8 +42,7 @@ ShadowPass::ShadowPass()
   }
 }
 
-void ShadowPass::Run(const FrameContent& content, const ShadowFit& fit,
-                     const ShadowTargets& targets) const {
+void ShadowPass::Run(const FrameContent& content, const ShadowTargets& targets) const {
   SetBlend(false);
   SetDepth(GL_LESS, true);
   gl.Enable(GL_DEPTH_CLAMP);
@@ -53,7 +52,7 @@ void ShadowPass::Run(const FrameContent& content, const ShadowFit& fit,
     gl.BindFramebuffer(GL_FRAMEBUFFER, targets.draw[layer].get());
     ClearDepth(1.0F);
     gl.Uniform1i(depth_.uniform("layer"), layer);
-    if (fit.layers[layer].needed) DrawSurfaces(content.solids);
+    DrawSurfaces(content.solids);
   }
   gl.Disable(GL_DEPTH_CLAMP);
 

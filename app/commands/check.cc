@@ -1,8 +1,14 @@
+#include "app/pipeline/check.h"
+
+#include <fmt/core.h>
+
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "app/commands/commands.h"
+#include "app/core/text.h"
 #include "bindings/scene_file.h"
 
 namespace pregrasp {
@@ -13,11 +19,23 @@ struct CheckOptions {
   std::vector<std::string> settings;
 };
 
+// One line a finding; the first error is the one line on stderr.
 int Check(const CheckOptions& options) {
   std::vector<Setting> settings;
   for (const std::string& setting : options.settings) settings.push_back(ParseSetting(setting));
   const Scene scene = LoadSceneFile(options.scene, settings);
   RequireNoSettingsLeft(settings);
+  int errors = 0, warnings = 0;
+  for (const CheckFinding& finding : CheckScene(scene)) {
+    const bool error = finding.severity == CheckFinding::Severity::kError;
+    ++(error ? errors : warnings);
+    fmt::print(errors == 1 && error ? stderr : stdout, "{}: {}: {}\n", finding.where,
+               error ? "error" : "warning", OneLine(finding.message));
+  }
+  if (errors > 0) return 2;
+  fmt::print("{}: {}, {} bodies, {}\n", options.scene,
+             warnings == 0 ? "clean" : fmt::format("usable, warnings: {}", warnings),
+             scene.bodies.size(), "at rest, no overlaps");
   return 0;
 }
 
@@ -25,7 +43,8 @@ int Check(const CheckOptions& options) {
 
 void AddCheck(CLI::App& app, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = app.add_subcommand("check", "Check a scene file");
+  CLI::App* command =
+      app.add_subcommand("check", "Check a scene: overlaps, not at rest, implausible units, rules");
   command->add_option("SCENE", options->scene, "The scene, a Lua file")->required();
   command->add_option("--set", options->settings, "Change a value: object.mass=0.2")
       ->allow_extra_args(false);

@@ -1,10 +1,85 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
 #include "app/commands/commands.h"
+#include "app/recording/build_info.h"
+#include "bindings/machine.h"
+#include "bindings/scene_file.h"
+#include "render/renderer.h"
 
 namespace pregrasp {
+namespace {
+
+void Line(const std::string& name, const std::string& value) {
+  fmt::print("{:<10} {}\n", name, value);
+}
+
+// The value of `key` in /proc/cpuinfo, of the first processor.
+std::string FindInCpuInfo(const std::string& key) {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind(key, 0) != 0) continue;
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string CpuFeatures() {
+  const std::string flags = " " + FindInCpuInfo("flags") + " ";
+  std::string features;
+  for (const char* feature : {"sse4_2", "avx", "avx2", "fma", "avx512f"}) {
+    if (flags.find(std::string(" ") + feature + " ") != std::string::npos) {
+      features += std::string(features.empty() ? "" : " ") + feature;
+    }
+  }
+  return features.empty() ? "none of sse4_2, avx, avx2, fma, avx512f" : features;
+}
+
+std::string Weights() {
+  namespace fs = std::filesystem;
+  std::map<std::string, std::uintmax_t> files;
+  const fs::path folder = DataFolder() / "assets" / "weights";
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    if (entry.is_regular_file()) files[entry.path().filename().string()] = entry.file_size();
+  }
+  if (files.empty()) return "none in " + folder.string();
+  std::string text;
+  for (const auto& [name, bytes] : files) {
+    text += fmt::format("{}{} ({} kB)", text.empty() ? "" : ", ", name, bytes / 1000);
+  }
+  return text;
+}
+
+int Info() {
+  Line("pregrasp", fmt::format("{}, commit {}", ProgramVersion(), GitHash()));
+  Line("data", DataFolder().string());
+  std::map<std::string, std::string> libraries = BuildLibraries();
+  libraries["lua"] = LUA_VERSION_MAJOR "." LUA_VERSION_MINOR "." LUA_VERSION_RELEASE;
+  std::string list;
+  for (const auto& [name, version] : libraries) {
+    list += fmt::format("{}{} {}", list.empty() ? "" : ", ", name, version);
+  }
+  Line("libraries", list);
+  Line("opengl", Renderer().description());
+  Line("weights", Weights());
+  Line("processor", fmt::format("{}, {} threads, {}", FindInCpuInfo("model name"),
+                                std::thread::hardware_concurrency(), CpuFeatures()));
+  return 0;
+}
+
+}  // namespace
 
 void AddInfo(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("info", "Versions, OpenGL renderer, weights, processor");
-  command->callback([&action] { action = [] { return 0; }; });
+  command->callback([&action] { action = [] { return Info(); }; });
 }
 
 }  // namespace pregrasp

@@ -9,7 +9,6 @@
 #include "app/core/rng.h"
 #include "app/hand/distance.h"
 #include "app/hand/hand_model.h"
-#include "app/scene/scene.h"
 
 namespace pregrasp {
 

@@ -1,0 +1,283 @@
+#include "bindings/lua_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/core/text.h"
+#include "app/geometry/contact_mesh.h"
+#include "bindings/lua_scene.h"
+#include "bindings/script.h"
+
+namespace pregrasp {
+namespace {
+
+const Schema kSettleOptions{"SettleOptions", {"seconds"}};
+const Schema kSettleResult{"SettleResult", {"moved_mm", "rotated_deg", "at_rest", "body"}};
+const Schema kRecordOptions{"RecordOptions", {"dir", "pictures"}};
+const Schema kShotOptions{"ShotOptions",
+                          {"caption", "camera", "size", "quality", "overlay", "file"}};
+const Schema kBody{"Body", {"name", "movable", "p", "q", "rpy_deg", "v", "w"}};
+const Schema kCloudOptions{"CloudOptions", {"points"}};
+const Schema kMeshOptions{"MeshOptions", {"triangles"}};
+
+// Roll, pitch and yaw about the fixed axes, the inverse of RotationFromRpy [deg].
+Vector3 CalcRpyDeg(const Matrix3& R) {
+  const double pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0));
+  return Vector3(std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))) * (180.0 / kPi);
+}
+
+// The overlays of a picture, by name.
+struct Overlay {
+  const char* name;
+  bool PictureConfig::*flag;
+};
+constexpr Overlay kOverlays[] = {
+    {"forces", &PictureConfig::forces},     {"cones", &PictureConfig::cones},
+    {"contacts", &PictureConfig::contacts}, {"ghost", &PictureConfig::ghost},
+    {"fingers", &PictureConfig::fingers},   {"axes", &PictureConfig::axes}};
+
+void ReadOverlays(const std::vector<std::string>& names, PictureConfig& config) {
+  for (const Overlay& overlay : kOverlays) config.*overlay.flag = false;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(std::begin(kOverlays), std::end(kOverlays),
+                                    [&](const Overlay& overlay) { return name == overlay.name; });
+    if (found == std::end(kOverlays)) {
+      throw InputError("", "overlay", "some of forces, cones, contacts, ghost, fingers and axes",
+                       '"' + name + '"');
+    }
+    config.*found->flag = true;
+  }
+}
+
+RenderQuality ParseQuality(const std::string& text) {
+  if (text == "draft") return RenderQuality::kDraft;
+  if (text == "normal") return RenderQuality::kNormal;
+  if (text == "still") return RenderQuality::kStill;
+  throw InputError("", "quality", "\"draft\", \"normal\" or \"still\"", '"' + text + '"');
+}
+
+}  // namespace
+
+ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
+  const Fields fields(L, index, kShotOptions);
+  ShotOptions options;
+  options.caption = fields.Optional<std::string>("caption", "");
+  options.file = fields.Find<std::string>("file");
+  if (fields.Has("camera")) options.picture.camera = ReadCamera(L, fields, "camera");
+  if (const auto size = fields.Find<std::vector<int>>("size")) {
+    if (size->size() != 2) fields.Refuse("size", "{width, height} in pixels");
+    options.picture.width = (*size)[0];
+    options.picture.height = (*size)[1];
+  }
+  if (const auto quality = fields.Find<std::string>("quality")) {
+    options.picture.quality = ParseQuality(*quality);
+  }
+  if (const auto overlays = fields.Find<std::vector<std::string>>("overlay")) {
+    ReadOverlays(*overlays, options.picture);
+  }
+  return options;
+}
+
+void TakeShot(lua_State* L, Session& session, const Simulation* simulation,
+              const ShotOptions& options) {
+  if (options.file) {
+    const FileAccess& files = Machine::Of(L).files();
+    session.ShootToFile(simulation, options.picture, options.caption,
+                        files.ResolveForWriting(*options.file));
+  } else {
+    session.Shoot(simulation, options.picture, options.caption);
+  }
+}
+
+void PushBody(lua_State* L, const World& world, const WorldState& state, int index) {
+  const Body& body = world.scene().bodies[index];
+  const RigidTransform X_WB = world.GetPoses(state)[index];
+  BodyState motion;
+  for (int i = 0; i < world.num_movables(); ++i) {
+    if (world.body_index(i) == index) motion = state.bodies[i];
+  }
+  RecordWriter(L, kBody)
+      .Set("name", body.name)
+      .Set("movable", body.movable())
+      .Set("p", Vector3(X_WB.translation()))
+      .Set("q", Quaternion(X_WB.linear()))
+      .Set("rpy_deg", CalcRpyDeg(X_WB.linear()))
+      .Set("v", motion.v_WB)
+      .Set("w", motion.w_WB);
+}
+
+int FindBody(const Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].name == name) return static_cast<int>(i);
+    names.push_back(scene.bodies[i].name);
+  }
+  const std::string nearest = FindNearest(name, names);
+  throw InputError(
+      "", "name", "a body of the scene",
+      '"' + name + '"' + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+}
+
+void CountMemory(lua_State* L, int kibibytes) { lua_gc(L, LUA_GCSTEP, kibibytes); }
+
+namespace {
+
+struct SettleOptions {
+  double seconds = 1.0;
+};
+struct RecordOptions {
+  std::string directory;
+  PictureMode pictures = PictureMode::kKey;
+};
+struct CloudOptions {
+  int points = 512;
+};
+struct MeshOptions {
+  int triangles = ContactMeshConfig{}.triangles;
+};
+
+}  // namespace
+
+template <>
+struct LuaValue<SettleOptions> {
+  static SettleOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    return {Fields(L, index, kSettleOptions).Optional<double>("seconds", 1.0)};
+  }
+};
+
+template <>
+struct LuaValue<RecordOptions> {
+  static RecordOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    const Fields fields(L, index, kRecordOptions);
+    return {fields.Required<std::string>("dir"),
+            ParsePictureMode(fields.Optional<std::string>("pictures", "key"), "", "pictures")};
+  }
+};
+
+template <>
+struct LuaValue<CloudOptions> {
+  static CloudOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    return {Fields(L, index, kCloudOptions).Optional<int>("points", CloudOptions{}.points)};
+  }
+};
+
+template <>
+struct LuaValue<MeshOptions> {
+  static MeshOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    return {Fields(L, index, kMeshOptions).Optional<int>("triangles", MeshOptions{}.triangles)};
+  }
+};
+
+namespace {
+
+// Methods.
+
+Pushed SessionSettle(lua_State* L, Session& session, const SettleOptions& options) {
+  const SettleResult result = session.Settle(options.seconds);
+  RecordWriter(L, kSettleResult)
+      .Set("moved_mm", 1e3 * result.largest.moved)
+      .Set("rotated_deg", RadToDeg(result.largest.rotated))
+      .Set("at_rest", result.at_rest)
+      .Set("body", result.largest.body);
+  return {1};
+}
+
+Pushed SessionSimulate(lua_State* L, const std::shared_ptr<Session>& session) {
+  PushObject(L, std::make_shared<LuaSimulation>(LuaSimulation{session, session->Simulate()}));
+  return {1};
+}
+
+void SessionRecord(lua_State* L, const std::shared_ptr<Session>& session,
+                   const RecordOptions& options) {
+  session->Record(Machine::Of(L).files().ResolveForWriting(options.directory), options.pictures);
+  ScriptContext::Of(L).recording.push_back(session);
+}
+
+std::string SessionSave(lua_State* L, Session& session, const std::optional<std::string>& dir) {
+  std::optional<std::filesystem::path> directory;
+  if (dir) directory = Machine::Of(L).files().ResolveForWriting(*dir);
+  return session.Save(directory).string();
+}
+
+void SessionShot(lua_State* L, Session& session, const ShotOptions& options) {
+  TakeShot(L, session, nullptr, options);
+}
+
+Pushed SessionBody(lua_State* L, Session& session, const std::string& name) {
+  PushBody(L, session.world(), session.start(), FindBody(session.scene(), name));
+  return {1};
+}
+
+Pushed SessionCloud(lua_State* L, Session& session, const CloudOptions& options) {
+  return PushCloud(L, session, options.points);
+}
+
+Pushed SessionMesh(lua_State* L, Session& session, const MeshOptions& options) {
+  return PushContactMesh(L, session, options.triangles);
+}
+
+// Properties.
+
+std::string SessionName(Session& session) { return session.scene().name; }
+std::string SessionFile(Session& session) { return session.scene().file; }
+std::int64_t SessionSeed(Session& session) {
+  return static_cast<std::int64_t>(session.config().seed);
+}
+double SessionDt(Session& session) { return session.world().config().dt; }
+std::string SessionStepId(Session& session) { return session.last_step_id(); }
+std::vector<std::string> SessionDepartures(Session& session) {
+  return RuleDepartures(session.scene());
+}
+std::vector<std::string> SessionBodies(Session& session) {
+  std::vector<std::string> names;
+  for (const Body& body : session.scene().bodies) names.push_back(body.name);
+  return names;
+}
+Pushed SessionObject(lua_State* L, Session& session) {
+  PushBody(L, session.world(), session.start(), 0);
+  return {1};
+}
+
+int SessionToString(lua_State* L) {
+  const auto session = FindObject<Session>(L, 1);
+  lua_pushfstring(L, "Session(%s)", session ? session->scene().name.c_str() : "?");
+  return 1;
+}
+
+}  // namespace
+
+const ClassInfo& SessionClass() {
+  static const ClassInfo info{"Session",
+                              {
+                                  Method<&SessionSettle>("settle", "options"),
+                                  Method<&SessionSimulate>("simulate"),
+                                  Method<&SessionRecord>("record", "options"),
+                                  Method<&SessionShot>("shot", "options"),
+                                  Method<&SessionSave>("save", "dir"),
+                                  Method<&SessionBody>("body", "name"),
+                                  Method<&SessionCloud>("cloud", "options"),
+                                  Method<&PushDistance>("distance", "point"),
+                                  Method<&SessionMesh>("mesh", "options"),
+                              },
+                              {
+                                  Property<&SessionName>("name"),
+                                  Property<&SessionFile>("file"),
+                                  Property<&SessionSeed>("seed"),
+                                  Property<&SessionDt>("dt"),
+                                  Property<&SessionStepId>("step_id"),
+                                  Property<&SessionBodies>("bodies"),
+                                  Property<&SessionObject>("object"),
+                                  Property<&SessionDepartures>("departures"),
+                              },
+                              SessionToString};
+  return info;
+}
+
+std::vector<const Schema*> SessionSchemas() {
+  return {&kSettleOptions, &kSettleResult, &kRecordOptions, &kShotOptions,
+          &kBody,          &kCloudOptions, &kMeshOptions};
+}
+
+}  // namespace pregrasp

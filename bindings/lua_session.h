@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+
+#include "app/pipeline/session.h"
+#include "bindings/function.h"
+
+namespace pregrasp {
+
+/// A simulation as a script holds it: it knows the session whose journal its steps go to.
+struct LuaSimulation {
+  std::shared_ptr<Session> session;
+  std::shared_ptr<Simulation> simulation;
+};
+
+const ClassInfo& SessionClass();
+const ClassInfo& SimulationClass();
+
+template <>
+struct LuaClass<Session> {
+  static const ClassInfo& info() { return SessionClass(); }
+};
+template <>
+struct LuaClass<LuaSimulation> {
+  static const ClassInfo& info() { return SimulationClass(); }
+};
+
+/// What shot{..} takes.
+struct ShotOptions {
+  PictureConfig picture;
+  std::string caption;
+  std::optional<std::string> file;
+};
+template <>
+struct LuaValue<ShotOptions> {
+  static ShotOptions Read(lua_State* L, int index, const std::string& path);
+};
+
+/// Takes the picture. @param simulation  null for the session's last step.
+void TakeShot(lua_State* L, Session& session, const Simulation* simulation,
+              const ShotOptions& options);
+
+/// Pushes where a body is and how it moves. @param index  of the scene.
+void PushBody(lua_State* L, const World& world, const WorldState& state, int index);
+
+/// The scene's index of a body. @throws InputError with the nearest name.
+int FindBody(const Scene& scene, const std::string& name);
+
+/// Tells Lua's collector of memory of ours that a new object or step holds [KiB].
+void CountMemory(lua_State* L, int kibibytes);
+
+std::vector<const Schema*> SessionSchemas();
+std::vector<const Schema*> SimulationSchemas();
+std::vector<const Schema*> GeometrySchemas();
+
+// The geometry calls of a session.
+Pushed PushCloud(lua_State* L, Session& session, int points);
+Pushed PushDistance(lua_State* L, Session& session, const Vector3& p_W);
+Pushed PushContactMesh(lua_State* L, Session& session, int triangles);
+
+}  // namespace pregrasp

@@ -1,0 +1,199 @@
+#include "bindings/script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/core/interrupt.h"
+#include "app/core/text.h"
+#include "app/recording/build_info.h"
+#include "bindings/lua_scene.h"
+#include "bindings/lua_session.h"
+#include "bindings/sandbox.h"
+#include "bindings/scene_file.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char kContextKey = 0;  // registry key, by address
+
+const Schema kOpenOptions{"OpenOptions", {"seed", "threads", "set"}};
+
+struct OpenOptions {
+  std::optional<std::int64_t> seed;
+  std::optional<int> threads;
+  std::vector<Setting> settings;
+};
+
+// set = { ["fingertips.friction"] = 0.5, ["object.p"] = {0, 0, 0.1} }
+std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields) {
+  std::vector<Setting> settings;
+  fields.Push("set");
+  if (lua_isnil(L, -1)) {
+    lua_pop(L, 1);
+    return settings;
+  }
+  if (!lua_istable(L, -1)) fields.Refuse("set", "a table {[\"object.mass\"] = 0.2, ..}");
+  lua_pushnil(L);
+  while (lua_next(L, -2) != 0) {
+    const std::string key = KeyText(L, -2);
+    std::string value;
+    if (lua_istable(L, -1)) {
+      const Vector3 v = LuaValue<Vector3>::Read(L, -1, "set." + key);
+      value = fmt::format("{},{},{}", v.x(), v.y(), v.z());
+    } else if (lua_type(L, -1) == LUA_TSTRING) {
+      value = lua_tostring(L, -1);
+    } else {
+      value = FormatDouble(LuaValue<double>::Read(L, -1, "set." + key));
+    }
+    settings.push_back({key, value});
+    lua_pop(L, 1);
+  }
+  lua_pop(L, 1);
+  std::sort(settings.begin(), settings.end(),
+            [](const Setting& a, const Setting& b) { return a.key < b.key; });
+  return settings;
+}
+
+}  // namespace
+
+template <>
+struct LuaValue<OpenOptions> {
+  static OpenOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    const Fields fields(L, index, kOpenOptions);
+    return {fields.Find<std::int64_t>("seed"), fields.Find<int>("threads"),
+            ReadSettings(L, fields)};
+  }
+};
+
+namespace {
+
+// A scene: the name of a file, what scene{..} gave, or its table.
+struct SceneArgument {
+  std::optional<std::string> file;
+  Scene scene;
+};
+
+}  // namespace
+
+template <>
+struct LuaValue<SceneArgument> {
+  static SceneArgument Read(lua_State* L, int index, const std::string& path) {
+    if (lua_type(L, index) == LUA_TSTRING) {
+      return {LuaValue<std::string>::Read(L, index, path), {}};
+    }
+    if (!lua_istable(L, index) && !IsScene(L, index)) {
+      throw InputError("", path, "a scene file's name or a scene", DescribeValue(L, index));
+    }
+    return {std::nullopt, ReadScene(L, index)};
+  }
+};
+
+namespace {
+
+std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions& options) {
+  const ScriptContext& context = ScriptContext::Of(L);
+  Machine& machine = Machine::Of(L);
+  Scene scene = std::move(argument.scene);
+  if (argument.file) {
+    scene = LoadSceneFile(machine.files().FindForReading(*argument.file), options.settings);
+  } else {
+    FinishScene(scene, machine.script_folder(), options.settings);
+  }
+  RequireNoSettingsLeft(options.settings);
+  SessionConfig config;
+  config.seed = static_cast<std::uint64_t>(
+      options.seed.value_or(static_cast<std::int64_t>(context.config.machine.seed)));
+  config.threads = options.threads.value_or(context.config.threads);
+  config.pictures = context.config.pictures;
+  config.remake = context.config.remake;
+  constexpr int kSessionKib = 2000;
+  CountMemory(L, kSessionKib);
+  return std::make_shared<Session>(std::move(scene), config);
+}
+
+const FunctionInfo& OpenFunction() {
+  static const FunctionInfo function = Function<&Open>("open", "scene, options");
+  return function;
+}
+
+Api MakeApi() {
+  Api api;
+  static Schema module{"pregrasp", {"version", "seed"}};
+  api.functions.push_back(&OpenFunction());
+  for (const FunctionInfo& constructor : SceneConstructors()) api.functions.push_back(&constructor);
+  for (const FunctionInfo* function : api.functions) module.keys.push_back(function->name);
+  api.module = &module;
+  api.classes = {&SessionClass(), &SimulationClass()};
+  for (const ClassInfo* scene_class : SceneClasses()) api.classes.push_back(scene_class);
+  api.schemas = {&kOpenOptions};
+  for (const auto& schemas :
+       {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas()}) {
+    api.schemas.insert(api.schemas.end(), schemas.begin(), schemas.end());
+  }
+  return api;
+}
+
+}  // namespace
+
+const Api& GetApi() {
+  static const Api api = MakeApi();
+  return api;
+}
+
+PictureMode ParsePictureMode(const std::string& text, const std::string& where,
+                             const std::string& field) {
+  if (text == "none") return PictureMode::kNone;
+  if (text == "key") return PictureMode::kKey;
+  if (text == "all") return PictureMode::kAll;
+  throw InputError(where, field, "\"none\", \"key\" or \"all\"", '"' + text + '"');
+}
+
+ScriptContext& ScriptContext::Of(lua_State* L) {
+  lua_rawgetp(L, LUA_REGISTRYINDEX, &kContextKey);
+  auto* context = static_cast<ScriptContext*>(lua_touserdata(L, -1));
+  lua_pop(L, 1);
+  return *context;
+}
+
+void OpenPregrasp(Machine& machine, ScriptContext& context) {
+  lua_State* L = machine.state();
+  lua_pushlightuserdata(L, &context);
+  lua_rawsetp(L, LUA_REGISTRYINDEX, &kContextKey);
+  const Api& api = GetApi();
+  RecordWriter module(L, *api.module);
+  module.Set("version", ProgramVersion());
+  module.Set("seed", static_cast<std::int64_t>(context.config.machine.seed));
+  for (const FunctionInfo* function : api.functions) {
+    PushFunction(L, *function);
+    module.SetTop(function->name);
+  }
+  MakeReadOnly(L);
+  SetModule(L, "pregrasp");
+}
+
+void RunScript(const fs::path& file, const std::vector<std::string>& arguments,
+               const ScriptConfig& config) {
+  ScriptContext context{config, {}};
+  Machine machine(config.machine);
+  machine.files().AllowReadsBelow(DataFolder() / "assets");
+  machine.files().SetOutput(config.output);
+  OpenPregrasp(machine, context);
+  lua_State* L = machine.state();
+  machine.LoadFile(L, file);
+  luaL_checkstack(L, static_cast<int>(arguments.size()) + 2, "too many arguments");
+  for (const std::string& argument : arguments) {
+    lua_pushlstring(L, argument.data(), argument.size());
+  }
+  try {
+    machine.Call(static_cast<int>(arguments.size()), 0);
+  } catch (const Interrupted&) {
+    for (const auto& session : context.recording) session->FinishRecording("interrupted");
+    throw;
+  }
+  for (const auto& session : context.recording) session->FinishRecording();
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/pipeline/session.h"
+#include "bindings/machine.h"
+#include "bindings/schema.h"
+
+namespace pregrasp {
+
+/// What the command line gives to a script.
+struct ScriptConfig {
+  MachineConfig machine;
+  int threads = 0;
+  std::optional<PictureMode> pictures;
+  std::filesystem::path output = "out";
+  std::string remake;  ///< the command line itself, for the footer of pictures
+};
+
+/// "none", "key" or "all". @throws InputError naming `where` and `field`.
+PictureMode ParsePictureMode(const std::string& text, const std::string& where,
+                             const std::string& field);
+
+/// Runs a Lua script. Recordings that are open at its end are finished; when it was interrupted,
+/// they are finished with status "interrupted"; when it failed, they leave nothing.
+/// @throws InputError with one line; Interrupted; InternalError.
+void RunScript(const std::filesystem::path& file, const std::vector<std::string>& arguments,
+               const ScriptConfig& config);
+
+/// What our calls need to know of the script that they are made from.
+struct ScriptContext {
+  ScriptConfig config;
+  /// Held until the end of the script, so that a recording is finished even if the script lets go
+  /// of its session.
+  std::vector<std::shared_ptr<Session>> recording;
+
+  static ScriptContext& Of(lua_State* L);
+};
+
+/// Makes `require "pregrasp"` work.
+void OpenPregrasp(Machine& machine, ScriptContext& context);
+
+/// All that is registered, by the names that scripts see; lua/meta is held against it.
+struct Api {
+  const Schema* module = nullptr;  ///< the fields of `require "pregrasp"`
+  std::vector<const FunctionInfo*> functions;
+  std::vector<const ClassInfo*> classes;
+  std::vector<const Schema*> schemas;
+};
+const Api& GetApi();
+
+}  // namespace pregrasp

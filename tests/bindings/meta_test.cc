@@ -1,0 +1,78 @@
+// lua/meta/pregrasp.lua against what is registered: the same names, both ways.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "bindings/script.h"
+
+namespace pregrasp {
+namespace {
+
+// "pregrasp.open(scene, options)", "Session:settle(options)", "Session.name", "BodyTable.mass".
+std::set<std::string> NamesInMeta() {
+  std::ifstream in(std::filesystem::path(PREGRASP_SOURCE_DIR) / "lua/meta/pregrasp.lua");
+  const std::regex class_line(R"(---@class (\w+).*)"), field_line(R"(---@field (\w+)\??\s.*)"),
+      function_line(R"(function (\w+[.:]\w+\(.*\)) end)"), param_line(R"(---@param (\w+)\??\s.*)");
+  std::set<std::string> names;
+  std::string current, parameters;
+  for (std::string line; std::getline(in, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, class_line)) {
+      current = match[1];
+      EXPECT_TRUE(names.insert(current).second) << current << " is there twice";
+    } else if (std::regex_match(line, match, field_line)) {
+      EXPECT_TRUE(names.insert(current + "." + std::string(match[1])).second) << line;
+    } else if (std::regex_match(line, match, param_line)) {
+      parameters += (parameters.empty() ? "" : ", ");
+      parameters += match[1];
+    } else if (std::regex_match(line, match, function_line)) {
+      const std::string name = match[1];
+      EXPECT_TRUE(names.insert(name).second) << line;
+      EXPECT_EQ(name.substr(name.find('(')), "(" + parameters + ")") << "its @param lines differ";
+      parameters.clear();
+    }
+  }
+  return names;
+}
+
+std::set<std::string> NamesRegistered() {
+  const Api& api = GetApi();
+  std::set<std::string> names = {api.module->name};
+  for (const std::string& key : api.module->keys) names.insert(api.module->name + "." + key);
+  for (const FunctionInfo* function : api.functions) {
+    names.erase(api.module->name + "." + function->name);
+    names.insert(api.module->name + "." + function->name + "(" + function->parameters + ")");
+  }
+  for (const ClassInfo* info : api.classes) {
+    names.insert(info->name);
+    for (const FunctionInfo& method : info->methods) {
+      names.insert(info->name + ":" + method.name + "(" + method.parameters + ")");
+    }
+    for (const FunctionInfo& property : info->properties) {
+      names.insert(info->name + "." + property.name);
+    }
+  }
+  for (const Schema* schema : api.schemas) {
+    names.insert(schema->name);
+    for (const std::string& key : schema->keys) names.insert(schema->name + "." + key);
+  }
+  return names;
+}
+
+TEST(MetaTest, AnnotationsNameExactlyWhatIsRegistered) {
+  const std::set<std::string> meta = NamesInMeta(), registered = NamesRegistered();
+  EXPECT_GT(registered.size(), 100U);
+  for (const std::string& name : registered) {
+    EXPECT_TRUE(meta.count(name)) << name << " is not in lua/meta/pregrasp.lua";
+  }
+  for (const std::string& name : meta) {
+    EXPECT_TRUE(registered.count(name)) << name << " of lua/meta/pregrasp.lua is not registered";
+  }
+}
+
+}  // namespace
+}  // namespace pregrasp

@@ -1,0 +1,263 @@
+// Scripts in the real machine, one claim at a time. Scenes are built in the script.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "bindings/script.h"
+#include "tests/bindings/lua_text.h"
+
+namespace pregrasp {
+namespace {
+
+using testing::internal::CaptureStdout;
+using testing::internal::GetCapturedStdout;
+
+// A 0.2 kg cube on a table, and a movable neighbour.
+const char* const kPrelude = R"(local pg = require "pregrasp"
+local table_body = { name = "table", shape = pg.box{1, 1, 0.1}, p = {0, 0, -0.05}, friction = 0.4 }
+local function cube(name, x)
+  return { name = name, shape = pg.box{0.1, 0.1, 0.1}, mass = 0.2, p = {x, 0, 0.05}, friction = 0.4 }
+end
+local function open(options)
+  return pg.open(pg.scene{ name = "cube", object = cube("cube", 0), environment = { table_body, cube("left", 0.2) } }, options)
+end
+)";
+
+ScriptConfig ConfigIn(const TestFolder& folder) {
+  ScriptConfig config;
+  config.output = folder.path() / "out";
+  return config;
+}
+
+// What the script prints.
+std::string RunIn(const TestFolder& folder, const std::string& body, ScriptConfig config) {
+  const auto file = folder.Write("test.lua", kPrelude + body);
+  CaptureStdout();
+  try {
+    RunScript(file, {}, config);
+  } catch (...) {
+    GetCapturedStdout();
+    throw;
+  }
+  return GetCapturedStdout();
+}
+
+std::string Script(const std::string& body) {
+  const TestFolder folder;
+  return RunIn(folder, body, ConfigIn(folder));
+}
+
+// The line with which the script's last line fails, after "test.lua:9: ".
+std::string Failure(const std::string& line) {
+  try {
+    Script(line);
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    const std::string marker = "test.lua:9: ";
+    const std::size_t at = message.find(marker);
+    return at == std::string::npos ? "not of the line: " + message
+                                   : message.substr(at + marker.size());
+  }
+  return "no failure";
+}
+
+TEST(SessionBindingTest, ReadsTheSceneAndItsStart) {
+  EXPECT_EQ(
+      Script("local s = open() print(s, s.name, s.seed, #s.bodies, s.bodies[3], s.object.p[3], "
+             "s:body('left').p[1], s.step_id, s.file == '', #s.departures)"),
+      "Session(cube)\tcube\t1\t3\tleft\t0.05\t0.2\tscene.start\ttrue\t0\n");
+}
+
+TEST(SessionBindingTest, SettlesAndSaysHowFarThingsWent) {
+  EXPECT_EQ(Script("local s = open() local r = s:settle{seconds = 0.5}\n"
+                   "print(r.at_rest, r.moved_mm < 0.01, r.rotated_deg < 0.01, s.step_id)"),
+            "true\ttrue\ttrue\tscene.settle\n");
+}
+
+TEST(SimulationBindingTest, APushMovesTheObjectAndGivesItsForces) {
+  // The cube weighs 1.96 N: the table holds it with up to 0.78 N, the finger pushes with 50 N/m.
+  EXPECT_EQ(Script(R"(
+    local sim = open():simulate()
+    sim:touch{ finger = "index", p_OC = {-0.05, 0, -0.02} }
+    sim:move{ finger = "index", by = {0.010, 0, 0}, seconds = 0.5 }
+    print(math.abs(sim.object.p[1]) < 1e-4, sim.fingers.index.touching, sim.fingers.thumb.on)
+    print(("%.2f"):format(sim.fingers.index.force_N))
+    sim:move{ finger = "index", by = {0.050, 0, 0}, seconds = 1 }
+    print(sim.object.p[1] > 0.03, sim.object.p[1] < 0.05, sim.step_id, #sim.contacts >= 4)
+    for _, c in ipairs(sim.contacts) do assert(c.force_N >= 0 and c.a and c.b and c.gap_mm < 1) end
+    sim:lift{ finger = "index" } print(sim.fingers.index.on))"),
+            "true\ttrue\tfalse\n0.50\ntrue\ttrue\tsim.3\ttrue\nfalse\n");
+}
+
+TEST(SimulationBindingTest, GoesBackExactlyAndForksGoTheirOwnWay) {
+  EXPECT_EQ(Script(R"(
+    local sim = open():simulate()
+    sim:touch{ finger = "index", p_OC = {-0.05, 0, 0} }
+    sim:move{ finger = "index", by = {0.03, 0, 0}, seconds = 0.5 }
+    local t, x, steps = sim.t, sim.object.p[1], sim.num_steps
+    local fork = sim:fork()
+    fork:move{ finger = "index", by = {0.02, 0, 0}, seconds = 0.3 }
+    print(sim.t == t, sim.object.p[1] == x, fork.object.p[1] > x, fork.num_steps > steps)
+    fork:back(fork.num_steps - steps)
+    print(fork.t == t, fork.object.p[1] == x, fork.step_id)
+    local again = sim:fork()
+    sim:step(30) again:step(30)
+    print(sim.object.p[1] == again.object.p[1], sim.num_steps == steps + 30)
+    sim:back(sim.num_steps) print(sim.t, sim.num_steps, sim.step_id))"),
+            "true\ttrue\ttrue\ttrue\ntrue\ttrue\tsim.2\ntrue\ttrue\n0.0\t0\tsim.1\n");
+}
+
+TEST(SessionBindingTest, SetChangesValuesAndTheSeedIsTheSessions) {
+  EXPECT_EQ(Script("local s = open{ seed = 7, set = { ['object.mass'] = 0.3, "
+                   "['environment.left.p'] = {0.3, 0, 0.05} } }\n"
+                   "print(s.seed, s:body('left').p[1])"),
+            "7\t0.3\n");
+}
+
+TEST(SessionBindingTest, GivesCloudDistanceAndMesh) {
+  EXPECT_EQ(Script(R"(
+    local s = open()
+    local cloud, mesh = s:cloud{ points = 100 }, s:mesh{ triangles = 40 }
+    print(cloud.count, #cloud.points, #cloud.normals, mesh.num_triangles, #mesh.triangles, #mesh.vertices == mesh.num_vertices)
+    local d = s:distance{0, 0, 0.3}
+    print(("%.3f %.3f"):format(d.phi, d.nhat[3])))"),
+            "100\t100\t100\t40\t40\ttrue\n0.250 0.800\n");
+}
+
+TEST(SessionBindingTest, TheSameScriptAndSeedGiveTheSameBytesForAnyThreads) {
+  const TestFolder folder;
+  const std::string body = R"(
+    local s = open()
+    s:record{ dir = "out/run", pictures = "none" }
+    s:settle{ seconds = 0.2 }
+    local sim = s:simulate()
+    sim:touch{ finger = "thumb", p_OC = {-0.05, 0.01, 0} }
+    sim:move{ finger = "thumb", by = {0.04 + 0.01 * math.random(), 0, 0}, seconds = 0.5 }
+    s:save())";
+  std::vector<std::vector<std::string>> runs;
+  for (const int threads : {1, 2, 5}) {
+    ScriptConfig config = ConfigIn(folder);
+    config.threads = threads;
+    config.output = folder.path() / ("out" + std::to_string(threads));
+    RunIn(folder, body, config);
+    std::vector<std::string> files;
+    for (const char* name : {"scene.json", "steps.jsonl", "rollout.csv", "run.rawlog"}) {
+      std::ifstream in(config.output / "run" / name, std::ios::binary);
+      files.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+      EXPECT_GT(files.back().size(), 100U) << name;
+    }
+    runs.push_back(files);
+  }
+  EXPECT_EQ(runs[0], runs[1]);
+  EXPECT_EQ(runs[0], runs[2]);
+}
+
+TEST(SessionBindingTest, ARecordingThatIsNotSavedIsFinishedAtTheEndAndAFailureLeavesNothing) {
+  const TestFolder folder;
+  const std::string body =
+      "local s = open() s:record{ dir = 'out/run', pictures = 'none' } s:simulate():wait{ seconds "
+      "= 0.1 }\n";
+  RunIn(folder, body, ConfigIn(folder));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/run/summary.json"));
+  std::filesystem::remove_all(folder.path() / "out");
+  EXPECT_THROW(RunIn(folder, body + "error 'on purpose'", ConfigIn(folder)), InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/run"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/run.partial"));
+}
+
+TEST(SessionBindingTest, WritesOnlyBelowTheOutputFolder) {
+  for (const char* path : {"elsewhere", "/tmp/pregrasp_elsewhere", "out/../..", "out/../elsewhere",
+                           "../out/x", "", "."}) {
+    const std::string message = Failure(std::string("open():record{ dir = '") + path + "' }");
+    EXPECT_EQ(message.find("record: "), 0U) << path << ": " << message;
+    EXPECT_NE(message.find("expected a path in the output folder"), std::string::npos) << message;
+  }
+}
+
+TEST(SessionBindingTest, WrongCallsSayWhatWasExpected) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"pg.open()", "open: scene: expected a scene file's name or a scene, got nothing"},
+      {"pg.open(3)", "open: scene: expected a scene file's name or a scene, got 3"},
+      {"pg.open('nowhere.lua')", "open: nowhere.lua: expected a file, got nothing of that name"},
+      {"pg.open('/etc/passwd')",
+       "open: /etc/passwd: expected a file in the working directory, the script's folder or the "
+       "assets, got one elsewhere"},
+      {"open{ sed = 1 }", "not of the line: "},
+      {"pg.opn('x')", "pregrasp: unknown key \"opn\" (did you mean \"open\"?)"},
+      {"pg.seed = 2", "\"seed\" cannot be set: this table can only be read"},
+      {"local s = open() s.nme = 1", "Session: unknown key \"nme\" (did you mean \"name\"?)"},
+      {"local s = open() s.name = 'x'", "Session: \"name\" can only be read"},
+      {"local s = open() return s.objet",
+       "Session: unknown key \"objet\" (did you mean \"object\"?)"},
+      {"local s = open() s.settle{}",
+       "settle: expected a Session before a colon (x:settle), got a table"},
+      {"open():settle{ second = 1 }", "settle: unknown key \"second\" (did you mean \"seconds\"?)"},
+      {"open():settle{ seconds = '1' }", "settle: seconds: expected a number, got \"1\""},
+      {"open():settle{ seconds = -1 }",
+       "settle: seconds: expected above 0 and at most 300 s, got -1"},
+      {"open():settle(1)", "settle: expected a table with seconds = .. and so on, got 1"},
+      {"open():settle({}, 2)", "settle: expected (options), got 2 arguments"},
+      {"open():simulate(1)", "simulate: expected no arguments, got 1 arguments"},
+      {"open():simulate():touch{ finger = 'toe', p_OC = {0, 0, 0} }",
+       "touch: finger: expected a finger (thumb, index, middle, ring or little), got \"toe\""},
+      {"open():simulate():touch{ finger = 'index' }",
+       "touch: p_OC: expected three numbers {x, y, z}, got nothing"},
+      {"open():simulate():move{ finger = 'index', by = {0, 0, 0} }",
+       "move: finger: expected a finger that touches, got \"index\", which is off"},
+      {"open():simulate():move{ finger = 'index' }",
+       "move: by: expected either by = {..} or to = {..}, got neither"},
+      {"open():simulate():back(1)", "back: steps: expected 0 to 0 steps, got 1"},
+      {"open():simulate():step(1.5)", "step: steps: expected a whole number, got 1.5"},
+      {"open():simulate():step(-1)", "step: steps: expected a count of at least 0, got -1"},
+      {"open():simulate():wait{ seconds = 1e9 }", "wait: seconds: expected 0 to 300 s, got 1e+09"},
+      {"open():simulate():body('lef')",
+       "body: name: expected a body of the scene, got \"lef\" (did you mean \"left\"?)"},
+      {"return open():simulate().object.movabel",
+       "Body: unknown key \"movabel\" (did you mean \"movable\"?)"},
+      {"open():simulate().fingers.index.on = true", "no failure"},
+      {"open():simulate().fingers.index.slip = true",
+       "Finger: unknown key \"slip\" (the keys are on, touching, slipping, force_N, "},
+      {"open():shot{ quality = 'best' }",
+       "shot: quality: expected \"draft\", \"normal\" or \"still\", got \"best\""},
+      {"open():shot{ overlay = {'force'} }",
+       "shot: overlay: expected some of forces, cones, contacts, ghost, fingers and axes, got "
+       "\"force\""},
+      {"open():shot{ size = {1, 2, 3} }",
+       "shot: size: expected {width, height} in pixels, got a table"},
+      {"open():save()", "save: dir: expected a folder, as nothing is recorded, got nothing"},
+      {"open():record{ dir = 'out/x', pictures = 'some' }",
+       "record: pictures: expected \"none\", \"key\" or \"all\", got \"some\""},
+      {"pg.open(pg.box{1, 1, 1})",
+       "open: scene: expected a scene file's name or a scene, got a Shape"},
+  };
+  for (const auto& [line, expected] : cases) {
+    EXPECT_EQ(Failure(line).find(expected), 0U) << line << "\n  " << Failure(line);
+  }
+}
+
+TEST(SessionBindingTest, AScriptsErrorInASceneFileNamesBothLines) {
+  const TestFolder folder;
+  folder.Write("bad.lua", "return scene {\n  name = 'bad', objct = {} }");
+  try {
+    RunIn(folder, "pg.open('bad.lua')", ConfigIn(folder));
+    FAIL() << "no failure";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("test.lua:9: open: "), std::string::npos) << message;
+    EXPECT_NE(message.find("bad.lua:1: unknown key \"objct\" (did you mean \"object\"?)"),
+              std::string::npos)
+        << message;
+  }
+}
+
+TEST(SessionBindingTest, OurCallsAreNotCountedAsTheScriptsTime) {
+  const TestFolder folder;
+  ScriptConfig config = ConfigIn(folder);
+  config.machine.seconds = 0.05;
+  EXPECT_EQ(RunIn(folder, "open():simulate():wait{ seconds = 100 } print 'done'", config),
+            "done\n");
+}
+
+}  // namespace
+}  // namespace pregrasp
