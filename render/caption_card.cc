@@ -78,7 +78,8 @@ double CutToHeight(const OverlayStyle& style, std::vector<CardLine>& lines, doub
 
 void DrawScale(Canvas& canvas, const Rect& bar, const std::vector<Rgba>& colors) {
   const auto last = static_cast<double>(colors.size() - 1);
-  for (double x = 0.0; x < bar.width; x += 1.0) {
+  const int columns = static_cast<int>(bar.width);
+  for (int x = 0; x < columns; ++x) {
     const double t = last * std::clamp((x + 0.5) / bar.width, 0.0, 1.0);
     const auto i = std::min(static_cast<std::size_t>(t), colors.size() - 1);
     const Rgba& p = colors[i];
@@ -98,7 +99,7 @@ std::string FitText(FontSet& fonts, FontFace face, float size, const std::string
   while (!characters.empty()) {
     characters.pop_back();
     while (!characters.empty() && characters.back() == U' ') characters.pop_back();
-    const std::string cut = EncodeUtf8(characters) + kEllipsis;
+    std::string cut = EncodeUtf8(characters) + kEllipsis;
     if (fonts.TextWidth(face, size, cut) <= width) return cut;
   }
   return "";
@@ -111,7 +112,9 @@ std::vector<std::string> WrapText(FontSet& fonts, FontFace face, float size,
   for (std::size_t start = 0; start <= text.size();) {
     const std::size_t end = std::min(text.find(' ', start), text.size());
     const std::string word = text.substr(start, end - start);
-    const std::string longer = line.empty() ? word : line + " " + word;
+    std::string longer = line;
+    if (!line.empty()) longer += ' ';
+    longer += word;
     if (line.empty() || fonts.TextWidth(face, size, longer) <= width) {
       line = longer;
     } else {

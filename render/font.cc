@@ -95,7 +95,7 @@ const Glyph& FontSet::GetGlyph(FontFace face, float size, char32_t character, in
   // Light hinting snaps heights to the pixel grid and leaves widths alone.
   if (FT_Load_Char(ft, character, FT_LOAD_TARGET_LIGHT) == 0) {
     glyph.advance = static_cast<float>(ft->glyph->linearHoriAdvance) / 65536.0F;
-    FT_Outline_Translate(&ft->glyph->outline, phase * 16, 0);
+    FT_Outline_Translate(&ft->glyph->outline, FT_Pos{16} * phase, 0);
     if (FT_Render_Glyph(ft->glyph, FT_RENDER_MODE_NORMAL) == 0) {
       const FT_Bitmap& bitmap = ft->glyph->bitmap;
       glyph.width = static_cast<int>(bitmap.width);

@@ -87,6 +87,7 @@ class Collector {
     GpuMesh& mesh = cache_.Get(body.mesh);
     Draw draw;
     draw.surface = &cache_.Surface(mesh, body.smooth);
+    draw.closed = mesh.closed;
     draw.first = static_cast<int>(content_.instances.size());
     Instance instance = MakeInstance(Eigen::Affine3d(body.X_WB), body.color);
     instance.roughness = std::clamp(body.roughness, 0.0F, 1.0F);
@@ -132,7 +133,9 @@ class Collector {
   Draw AddPart(const std::shared_ptr<const TriangleMesh>& mesh, const Eigen::Affine3d& X,
                const Rgba& color, float roughness) {
     Draw draw;
-    draw.surface = &cache_.Surface(cache_.Get(mesh), true);
+    GpuMesh& entry = cache_.Get(mesh);
+    draw.surface = &cache_.Surface(entry, true);
+    draw.closed = entry.closed;
     draw.first = static_cast<int>(content_.instances.size());
     draw.distance = DistanceOf(X.translation());
     draw.color = color;

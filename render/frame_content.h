@@ -13,6 +13,7 @@ namespace pregrasp {
 /// One draw call: instances [first, first + count) of a surface.
 struct Draw {
   const GpuSurface* surface = nullptr;
+  bool closed = false;  ///< its back faces need not be drawn
   int first = 0, count = 1;
   double distance = 0.0;  ///< of its centre along the view [m], for sorting
   Rgba color;

@@ -1,8 +1,6 @@
 #include "render/frame_data.h"
 
-#include <array>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "render/gl_state.h"
@@ -18,17 +16,12 @@ FrameData::FrameData()
   gl.GenTextures(1, &name);
   face_colors_ = GlTexture(name);
   gl.BindVertexArray(line_vao_.get());
-  gl.BindBuffer(GL_ARRAY_BUFFER, lines_.get());
-  const std::array<std::pair<int, std::size_t>, 4> parts = {{{3, offsetof(LinePiece, p)},
-                                                             {3, offsetof(LinePiece, q)},
-                                                             {4, offsetof(LinePiece, color)},
-                                                             {1, offsetof(LinePiece, width)}}};
-  for (GLuint slot = 0; slot < parts.size(); ++slot) {
-    gl.EnableVertexAttribArray(slot);
-    gl.VertexAttribPointer(slot, parts[slot].first, GL_FLOAT, GL_FALSE, sizeof(LinePiece),
-                           reinterpret_cast<const void*>(parts[slot].second));
-    gl.VertexAttribDivisor(slot, 1);
-  }
+  gl.BindBuffer(GL_ARRAY_BUFFER, lines_.get());  // makes the name a buffer
+  BindAttributes(0, lines_, sizeof(LinePiece), true,
+                 {{0, 3, offsetof(LinePiece, p)},
+                  {1, 3, offsetof(LinePiece, q)},
+                  {2, 4, offsetof(LinePiece, color)},
+                  {3, 1, offsetof(LinePiece, width)}});
 }
 
 void FrameData::Upload(const FrameContent& content, const MeshCache& cache) {

@@ -18,6 +18,7 @@ namespace pregrasp {
   X(BindFramebuffer)                   \
   X(BindTexture)                       \
   X(BindVertexArray)                   \
+  X(BindVertexBuffer)                  \
   X(BlendFuncSeparate)                 \
   X(BlitFramebuffer)                   \
   X(BufferData)                        \
@@ -44,7 +45,6 @@ namespace pregrasp {
   X(DrawElementsInstancedBaseInstance) \
   X(Enable)                            \
   X(EnableVertexAttribArray)           \
-  X(Finish)                            \
   X(FramebufferTexture)                \
   X(FramebufferTextureLayer)           \
   X(GenBuffers)                        \
@@ -60,7 +60,6 @@ namespace pregrasp {
   X(GetUniformBlockIndex)              \
   X(GetUniformLocation)                \
   X(LinkProgram)                       \
-  X(PixelStorei)                       \
   X(ReadBuffer)                        \
   X(ReadPixels)                        \
   X(ShaderSource)                      \
@@ -69,18 +68,20 @@ namespace pregrasp {
   X(TexStorage2D)                      \
   X(TexStorage2DMultisample)           \
   X(TexStorage3D)                      \
-  X(Uniform1i)                         \
   X(Uniform1f)                         \
+  X(Uniform1i)                         \
   X(Uniform2f)                         \
+  X(Uniform4fv)                        \
   X(UniformBlockBinding)               \
   X(UniformMatrix4fv)                  \
-  X(Uniform4fv)                        \
   X(UseProgram)                        \
-  X(VertexAttribDivisor)               \
-  X(VertexAttribPointer)               \
+  X(VertexAttribBinding)               \
+  X(VertexAttribFormat)                \
+  X(VertexBindingDivisor)              \
   X(Viewport)
 
 struct GlFunctions {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): the name is declared, not used in an expression
 #define PREGRASP_GL_DECLARE(name) decltype(&::gl##name) name = nullptr;
   PREGRASP_GL_FUNCTIONS(PREGRASP_GL_DECLARE)
 #undef PREGRASP_GL_DECLARE

@@ -104,6 +104,18 @@ GlFramebuffer MakeLayerFramebuffer(GLenum attachment, const GlTexture& array, in
   return framebuffer;
 }
 
+void BindAttributes(GLuint binding, const GlBuffer& buffer, std::size_t stride, bool per_instance,
+                    const std::vector<VertexAttribute>& attributes) {
+  gl.BindVertexBuffer(binding, buffer.get(), 0, static_cast<GLsizei>(stride));
+  gl.VertexBindingDivisor(binding, per_instance ? 1 : 0);
+  for (const VertexAttribute& attribute : attributes) {
+    gl.EnableVertexAttribArray(attribute.slot);
+    gl.VertexAttribFormat(attribute.slot, attribute.floats, GL_FLOAT, GL_FALSE,
+                          static_cast<GLuint>(attribute.offset));
+    gl.VertexAttribBinding(attribute.slot, binding);
+  }
+}
+
 GlProgram::GlProgram(const std::vector<std::string>& vertex,
                      const std::vector<std::string>& fragment,
                      const std::vector<std::string>& defines)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,6 +70,18 @@ void Upload(const GlBuffer& buffer, GLenum target, const std::vector<T>& values,
 GlFramebuffer MakeFramebuffer(const GlTexture* color, const GlTexture* depth);
 /// Of one layer of an array.
 GlFramebuffer MakeLayerFramebuffer(GLenum attachment, const GlTexture& array, int layer);
+
+/// A vertex attribute of `floats` numbers, `offset` bytes into a record.
+struct VertexAttribute {
+  GLuint slot = 0;
+  int floats = 0;
+  std::size_t offset = 0;
+};
+
+/// Makes the bound vertex array read attributes from `buffer`, whose records are `stride` bytes; a
+/// record serves one vertex, or one instance. Buffers of one array differ in `binding`.
+void BindAttributes(GLuint binding, const GlBuffer& buffer, std::size_t stride, bool per_instance,
+                    const std::vector<VertexAttribute>& attributes);
 
 /// A linked program made of the named files of render/shaders; the uniform block Frame is
 /// bound to slot 0 if the program has it.

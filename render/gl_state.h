@@ -58,8 +58,13 @@ inline void DrawSurface(const Draw& draw) {
                                        nullptr, draw.count, static_cast<GLuint>(draw.first));
 }
 
+/// Leaves out back faces where nobody can see them.
 inline void DrawSurfaces(const std::vector<Draw>& draws) {
-  for (const Draw& draw : draws) DrawSurface(draw);
+  for (const Draw& draw : draws) {
+    if (draw.closed) gl.Enable(GL_CULL_FACE);
+    DrawSurface(draw);
+    if (draw.closed) gl.Disable(GL_CULL_FACE);
+  }
 }
 
 /// Three vertices without attributes: screen_vert.glsl makes them cover everything.

@@ -11,7 +11,7 @@ namespace {
 // Costs are in pixels of leader that the reader would rather follow.
 constexpr double kCrossing = 120.0;    // two leaders cross
 constexpr double kUnderBox = 300.0;    // a leader runs under another's box
-constexpr double kOverShape = 90.0;    // the box hides part of a thing
+constexpr double kOverShape = 70.0;    // the box hides part of a thing
 constexpr double kPastAnchor = 60.0;   // a leader passes close by another's anchor
 constexpr double kGap = 5.0;           // between boxes
 constexpr double kAnchorRadius = 5.0;  // kept free around anchors

@@ -61,8 +61,8 @@ ShadowFit::Layer MakeLayer(const Eigen::AlignedBox3d& wanted, const Eigen::Align
   Eigen::AlignedBox3d box = column.intersection(casters);
   if (box.isEmpty()) box = casters;
   ShadowFit::Layer layer;
-  // A border keeps the filter's taps on the map.
-  layer.width = std::max(1.08 * std::max(box.sizes().x(), box.sizes().y()), 1e-3);
+  // A border wide enough that penumbrae, too, lie well on the map.
+  layer.width = std::max(1.16 * std::max(box.sizes().x(), box.sizes().y()), 1e-3);
   const double near = casters.min().z() - 0.01 * layer.width;
   layer.depth = casters.max().z() - near + 0.01 * layer.width;
   layer.map_from_world.topLeftCorner<2, 3>() = A.topRows<2>() / layer.width;
@@ -103,6 +103,9 @@ ShadowFit FitShadow(const CameraView& view, const Vector3& to_light_W,
   if (casters.isEmpty()) casters.extend(Vector3(Vector3::Zero()));
   fit.layers[0] = MakeLayer(TargetBounds(view, A), casters, A);
   fit.layers[1] = MakeLayer(ViewBounds(view, A), casters, A);
+  const auto box = TargetBounds(view, A);
+  fit.layers[1].needed = (casters.min().head<2>().array() < box.min().head<2>().array()).any() ||
+                         (casters.max().head<2>().array() > box.max().head<2>().array()).any();
   return fit;
 }
 

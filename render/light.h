@@ -20,6 +20,7 @@ struct ShadowFit {
     Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();
     double width = 1.0;  ///< of the square it covers [m]
     double depth = 1.0;  ///< that z spans, measured along the light [m]
+    bool needed = true;  ///< false if the layer before holds all that casts shadows
   };
   Vector3 x_W = Vector3::UnitX(), y_W = Vector3::UnitY();  ///< the map's axes
   std::array<Layer, kShadowLayers> layers;

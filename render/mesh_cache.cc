@@ -8,32 +8,22 @@
 namespace pregrasp {
 namespace {
 
-void BindFloats(GLuint slot, int count, std::size_t stride, std::size_t offset, GLuint divisor) {
-  gl.EnableVertexAttribArray(slot);
-  gl.VertexAttribPointer(slot, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
-                         reinterpret_cast<const void*>(offset));
-  gl.VertexAttribDivisor(slot, divisor);
-}
-
-void BindInstances(const GlBuffer& instances) {
-  gl.BindBuffer(GL_ARRAY_BUFFER, instances.get());
-  for (GLuint row = 0; row < 3; ++row) {
-    BindFloats(2 + row, 4, sizeof(Instance), row * 4 * sizeof(float), 1);
-  }
-  BindFloats(5, 4, sizeof(Instance), offsetof(Instance, color), 1);
-  BindFloats(6, 4, sizeof(Instance), offsetof(Instance, roughness), 1);
-}
-
 GpuSurface UploadSurface(const ShadedSurface& surface, const GlBuffer& instances) {
   using Vertex = ShadedSurface::Vertex;
+  constexpr std::size_t kRow = 4 * sizeof(float);
   GpuSurface gpu{MakeVertexArray(), MakeBuffer(), MakeBuffer(),
                  static_cast<int>(surface.indices.size())};
   gl.BindVertexArray(gpu.vao.get());
   Upload(gpu.vertices, GL_ARRAY_BUFFER, surface.vertices, GL_STATIC_DRAW);
-  BindFloats(0, 3, sizeof(Vertex), offsetof(Vertex, p), 0);
-  BindFloats(1, 3, sizeof(Vertex), offsetof(Vertex, n), 0);
-  BindInstances(instances);
   Upload(gpu.indices, GL_ELEMENT_ARRAY_BUFFER, surface.indices, GL_STATIC_DRAW);
+  BindAttributes(0, gpu.vertices, sizeof(Vertex), false,
+                 {{0, 3, offsetof(Vertex, p)}, {1, 3, offsetof(Vertex, n)}});
+  BindAttributes(1, instances, sizeof(Instance), true,
+                 {{2, 4, offsetof(Instance, rows)},
+                  {3, 4, offsetof(Instance, rows) + kRow},
+                  {4, 4, offsetof(Instance, rows) + 2 * kRow},
+                  {5, 4, offsetof(Instance, color)},
+                  {6, 4, offsetof(Instance, roughness)}});
   gl.BindVertexArray(0);
   return gpu;
 }
@@ -42,16 +32,20 @@ GpuEdges UploadEdges(const std::vector<ShadedEdge>& edges) {
   GpuEdges gpu{MakeVertexArray(), MakeBuffer(), static_cast<int>(edges.size())};
   gl.BindVertexArray(gpu.vao.get());
   Upload(gpu.edges, GL_ARRAY_BUFFER, edges, GL_STATIC_DRAW);
-  for (GLuint slot = 0; slot < 4; ++slot) {
-    BindFloats(slot, 3, sizeof(ShadedEdge), slot * 3 * sizeof(float), 1);
-  }
+  BindAttributes(0, gpu.edges, sizeof(ShadedEdge), true,
+                 {{0, 3, offsetof(ShadedEdge, p)},
+                  {1, 3, offsetof(ShadedEdge, q)},
+                  {2, 3, offsetof(ShadedEdge, n)},
+                  {3, 3, offsetof(ShadedEdge, m)}});
   gl.BindVertexArray(0);
   return gpu;
 }
 
 }  // namespace
 
-MeshCache::MeshCache() : instances_(MakeBuffer()) {}
+MeshCache::MeshCache() : instances_(MakeBuffer()) {
+  gl.BindBuffer(GL_ARRAY_BUFFER, instances_.get());  // makes the name a buffer
+}
 
 GpuMesh& MeshCache::Get(const std::shared_ptr<const TriangleMesh>& mesh) {
   PREGRASP_CHECK(mesh != nullptr);
@@ -62,6 +56,7 @@ GpuMesh& MeshCache::Get(const std::shared_ptr<const TriangleMesh>& mesh) {
   }
   GpuMesh& entry = meshes_[mesh.get()];
   entry.source = mesh;
+  entry.closed = IsClosedMesh(*mesh);
   for (Eigen::Index i = 0; i < mesh->V.rows(); ++i) {
     entry.bounds_B.extend(Vector3(mesh->V.row(i)));
   }

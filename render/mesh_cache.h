@@ -35,6 +35,7 @@ struct GpuEdges {
 struct GpuMesh {
   std::weak_ptr<const TriangleMesh> source;
   Eigen::AlignedBox3d bounds_B;
+  bool closed = false;  ///< its inside is never seen
   std::optional<GpuSurface> smooth, flat;
   std::optional<GpuEdges> all_edges, creases;
 };

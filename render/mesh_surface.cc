@@ -103,6 +103,23 @@ ShadedSurface BuildShadedSurface(const TriangleMesh& mesh, bool smooth) {
   return surface;
 }
 
+bool IsClosedMesh(const TriangleMesh& mesh) {
+  CheckIndices(mesh);
+  const std::vector<int> weld = WeldVertices(mesh.V);
+  std::vector<std::pair<int, int>> along, against;
+  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const int a = weld[mesh.F(f, corner)], b = weld[mesh.F(f, (corner + 1) % 3)];
+      if (a == b) continue;
+      along.emplace_back(a, b);
+      against.emplace_back(b, a);
+    }
+  }
+  std::sort(along.begin(), along.end());
+  std::sort(against.begin(), against.end());
+  return !along.empty() && along == against;
+}
+
 std::vector<ShadedEdge> BuildShadedEdges(const TriangleMesh& mesh, bool creases_only) {
   CheckIndices(mesh);
   const MatrixX3 N = FaceNormals(mesh);

@@ -36,6 +36,10 @@ ShadedSurface BuildShadedSurface(const TriangleMesh& mesh, bool smooth);
 /// Every edge once. With `creases_only`, those that are convex creases or borders.
 std::vector<ShadedEdge> BuildShadedEdges(const TriangleMesh& mesh, bool creases_only);
 
+/// Whether each edge is shared by two faces that run along it in opposite directions: the inside of
+/// such a mesh is never seen.
+bool IsClosedMesh(const TriangleMesh& mesh);
+
 /// Parts of annotations, with unit size about z: a cylinder and a cone of radius 1 from z = 0 to 1
 /// (the cone's tip is at 1), an open cone whose apex is at 0, a ball of radius 1.
 TriangleMesh UnitCylinder(int segments);

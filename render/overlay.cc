@@ -63,12 +63,20 @@ std::optional<std::vector<Vector2>> Outline(const RenderBody& body, const Camera
 }
 
 // Outlines, in the picture, of what labels had better not cover: bodies small enough to be what it
-// is about, and arrows.
+// is about, cones and arrows.
 std::vector<std::vector<Vector2>> Outlines(const RenderScene& scene, const CameraView& view) {
   std::vector<std::vector<Vector2>> outlines;
   for (const RenderBody& body : scene.bodies) {
     if (body.shading != Shading::kSolid) continue;
     if (auto outline = Outline(body, view)) outlines.push_back(std::move(*outline));
+  }
+  for (const RenderCone& cone : scene.cones) {
+    const double radius = cone.axis_W.norm() * std::tan(std::min(cone.half_angle, 1.4F));
+    const Vector3 rim = cone.p_W + cone.axis_W;
+    const Vector3 across_W = radius * view.forward().cross(cone.axis_W).normalized();
+    const auto tip = view.Project(cone.p_W), left = view.Project(rim - across_W),
+               right = view.Project(rim + across_W);
+    if (tip && left && right && across_W.allFinite()) outlines.push_back({*tip, *left, *right});
   }
   for (const RenderArrow& arrow : scene.arrows) {
     const auto from = view.Project(arrow.p_W), to = view.Project(arrow.p_W + arrow.v_W);
@@ -107,9 +115,15 @@ class Overlay {
     const Rect picture{0.0, 0.0, canvas_.width(), canvas_.height()};
     std::vector<LabelRequest> requests;
     std::vector<const RenderLabel*> labels;
+    int left_out = 0;
     for (const RenderLabel& label : scene_.labels) {
       const auto anchor = view_.Project(label.p_W);
       if (!anchor || !picture.Contains(*anchor)) continue;
+      const auto covers = [&anchor](const Rect& rect) { return rect.Contains(*anchor); };
+      if (std::any_of(obstacles.begin(), obstacles.end(), covers)) {
+        ++left_out;  // a leader into the card would point at its text
+        continue;
+      }
       requests.push_back({*anchor, {std::ceil(Width(label.text)) + 2.0 * pad + bar, height}});
       labels.push_back(&label);
     }
@@ -123,7 +137,6 @@ class Overlay {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (boxes[i]) DrawLeader(*boxes[i], requests[i].anchor, labels[i]->color);
     }
-    int left_out = 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (!boxes[i]) {
         ++left_out;

@@ -154,7 +154,7 @@ void PicturePass::DrawHiddenArrows(const FrameContent& content) const {
   SetDepth(GL_LESS, false);
   ghost_.Use();
   gl.Uniform1f(ghost_.uniform("nearer"), 0.0F);
-  gl.Uniform1f(ghost_.uniform("strength"), 0.25F);
+  gl.Uniform1f(ghost_.uniform("strength"), 0.55F);
   DrawSurfaces(content.arrows);
 }
 
@@ -185,7 +185,7 @@ void PicturePass::DrawCones(const FrameContent& content) const {
   gl.Uniform1f(ghost_.uniform("nearer"), 0.0F);
   gl.Enable(GL_CULL_FACE);
   for (const Draw& draw : content.cones) {
-    for (const auto& [func, strength] : {std::pair(GL_LESS, 0.45F), std::pair(GL_GREATER, 1.0F)}) {
+    for (const auto& [func, strength] : {std::pair(GL_LESS, 0.7F), std::pair(GL_GREATER, 1.0F)}) {
       SetDepth(static_cast<GLenum>(func), false);
       gl.Uniform1f(ghost_.uniform("strength"), strength);
       for (const int hidden : {GL_FRONT, GL_BACK}) {

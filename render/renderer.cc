@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "app/core/check.h"
 #include "app/core/error.h"
 #include "render/camera.h"
 #include "render/font.h"
@@ -52,7 +53,7 @@ Eigen::Matrix4d ViewFromWorld(const CameraView& view) {
 
 // Of 1 mm, 1 cm, 10 cm, .., the finest spacing whose squares are not crowded at the target.
 double GridSpacing(const CameraView& view) {
-  constexpr double kFewestPixels = 26.0;  // of a picture 720 high
+  constexpr double kFewestPixels = 16.0;  // of a picture 720 high
   const double smallest = kFewestPixels / 720.0 * view.view_height();
   double spacing = 0.01;
   while (spacing < smallest) spacing *= 10.0;
@@ -172,12 +173,12 @@ struct Renderer::Impl {
     std::vector<std::uint8_t> rgba(static_cast<std::size_t>(w) * h * 4);
     gl.ReadPixels(0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     for (int row = 0; row < h; ++row) {
+      // The tile's rows count upwards, the image's downwards.
       const std::uint8_t* from = &rgba[static_cast<std::size_t>(h - 1 - row) * w * 4];
-      // The tile's y counts from the picture's lower edge.
       const int image_row = image.height - y - h + row;
       std::uint8_t* to = &image.rgb[(static_cast<std::size_t>(image_row) * image.width + x) * 3];
-      for (int column = 0; column < w; ++column) {
-        std::copy(from + 4 * column, from + 4 * column + 3, to + 3 * column);
+      for (int column = 0; column < w; ++column, from += 4, to += 3) {
+        std::copy(from, from + 3, to);
       }
     }
   }
@@ -211,7 +212,7 @@ Image Renderer::Render(const RenderScene& scene, const RenderConfig& config) {
   FrameBlock frame = impl.MakeFrame(scene, view, fit, to_light, GroundHeight(scene, content));
   impl.data.Upload(content, impl.cache);
   impl.data.SetBlock(frame);
-  impl.shadow_pass.Run(content, *impl.shadows);
+  impl.shadow_pass.Run(content, fit, *impl.shadows);
   if (config.quality == RenderQuality::kStill) {
     impl.occlusion_pass.Run(content, scene.ground, *impl.occlusion);
   }
@@ -228,6 +229,8 @@ Image Renderer::Render(const RenderScene& scene, const RenderConfig& config) {
                     image);
     }
   }
+  const GLenum error = gl.GetError();  // of any call since the last picture
+  PREGRASP_CHECK(error == GL_NO_ERROR, error);
   DrawOverlay(image, impl.fonts, scene, view, scene.ground ? GridSpacing(view) : 0.0);
   return image;
 }

@@ -42,7 +42,8 @@ ShadowPass::ShadowPass()
   }
 }
 
-void ShadowPass::Run(const FrameContent& content, const ShadowTargets& targets) const {
+void ShadowPass::Run(const FrameContent& content, const ShadowFit& fit,
+                     const ShadowTargets& targets) const {
   SetBlend(false);
   SetDepth(GL_LESS, true);
   gl.Enable(GL_DEPTH_CLAMP);
@@ -52,7 +53,7 @@ void ShadowPass::Run(const FrameContent& content, const ShadowTargets& targets) 
     gl.BindFramebuffer(GL_FRAMEBUFFER, targets.draw[layer].get());
     ClearDepth(1.0F);
     gl.Uniform1i(depth_.uniform("layer"), layer);
-    DrawSurfaces(content.solids);
+    if (fit.layers[layer].needed) DrawSurfaces(content.solids);
   }
   gl.Disable(GL_DEPTH_CLAMP);
 

@@ -23,7 +23,7 @@ class ShadowPass {
   ShadowPass();
 
   /// Draws the solids' depths and leaves the maps bound for shaders/shadow.glsl.
-  void Run(const FrameContent& content, const ShadowTargets& targets) const;
+  void Run(const FrameContent& content, const ShadowFit& fit, const ShadowTargets& targets) const;
 
  private:
   void Reduce(const GlProgram& program, const GlTexture& from,

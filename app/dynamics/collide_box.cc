@@ -210,23 +210,28 @@ class BoxPair {
     if (IsSliver(polygon, half[ix], half[iy])) return FaceResult::kSliver;
 
     manifold->nhat_W = (flip ? -s : s) * ref.R_WP.col(i);
-    std::array<ManifoldPoint, 8> points;
+    std::array<PlanarPoint, 8> points;
     int count = 0;
     for (int n = 0; n < polygon.size; ++n) {
       const ClipPoint& point = polygon.points[n];
       if (point.height > margin_) continue;
       const std::uint32_t in = polygon.points[n == 0 ? polygon.size - 1 : n - 1].edge;
       const bool is_corner = point.edge < 4 && in < 4;
-      Vector3 p_ref;
-      p_ref[ix] = point.x;
-      p_ref[iy] = point.y;
-      p_ref[i] = s * (half[i] + 0.5 * point.height);
       points[count++] = {
-          ref.p_WP + ref.R_WP * p_ref, point.height,
+          point.x, point.y, point.height,
           (is_corner ? corner[point.edge] : 32U + 8U * in + point.edge) | (flip ? kFaceOfB : 0U)};
     }
     if (count == 0) return FaceResult::kApart;
-    ReduceToFour(points.data(), count, manifold);
+    std::array<int, Manifold::kMaxPoints> chosen;
+    const int num_chosen = ChooseFour(points.data(), count, &chosen);
+    for (int n = 0; n < num_chosen; ++n) {
+      const PlanarPoint& point = points[chosen[n]];
+      Vector3 p_ref;
+      p_ref[ix] = point.x;
+      p_ref[iy] = point.y;
+      p_ref[i] = s * (half[i] + 0.5 * point.phi);
+      manifold->Add(ref.p_WP + ref.R_WP * p_ref, point.phi, point.feature);
+    }
     return FaceResult::kTouching;
   }
 

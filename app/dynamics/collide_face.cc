@@ -83,26 +83,36 @@ void AddCapsulePoints(const FacePlane& plane, Manifold* manifold) {
 // All vertices near the plane, the lowest first so that a crowd cannot push it out.
 void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   constexpr int kMaxVertices = 64;
-  const Polytope& polytope = *plane.q.convex->polytope;
+  const std::vector<Vector3>& vertices = plane.q.convex->polytope->vertices;
+  const int ix = (plane.i + 1) % 3, iy = (plane.i + 2) % 3;
   const Vector3 n = plane.s * plane.R_AQ.row(plane.i);
+  const Vector3 x = plane.R_AQ.row(ix), y = plane.R_AQ.row(iy);
   const double base = plane.s * plane.p_AQ[plane.i] - plane.a.convex->half[plane.i];
-  const int lowest = FindSupportVertex(polytope, -n);
   const double limit = plane.margin - base;
-  std::array<ManifoldPoint, kMaxVertices> points;
-  int count = 0;
-  const auto add = [&](int i) {
-    const double height = n.dot(polytope.vertices[i]);
-    if (height > limit || count == kMaxVertices) return;
-    Vector3 p_A = plane.p_AQ + plane.R_AQ * polytope.vertices[i];
-    p_A[plane.i] -= 0.5 * plane.s * (base + height);
-    points[count++] = {plane.a.p_WP + plane.a.R_WP * p_A, base + height,
+  std::array<PlanarPoint, kMaxVertices + 1> points;
+  int count = 1, lowest = 0;  // the first place is the lowest vertex's
+  double lowest_height = n.dot(vertices[0]);
+  for (int i = 0; i < static_cast<int>(vertices.size()); ++i) {
+    const double height = n.dot(vertices[i]);
+    if (height < lowest_height) {
+      lowest_height = height;
+      lowest = i;
+    }
+    if (height > limit || count > kMaxVertices) continue;
+    points[count++] = {x.dot(vertices[i]), y.dot(vertices[i]), base + height,
                        static_cast<std::uint32_t>(i)};
-  };
-  add(lowest);
-  for (int i = 0; i < static_cast<int>(polytope.vertices.size()); ++i) {
-    if (i != lowest) add(i);
   }
-  ReduceToFour(points.data(), count, manifold);
+  if (lowest_height > limit) return;
+  points[0] = {x.dot(vertices[lowest]), y.dot(vertices[lowest]), base + lowest_height,
+               static_cast<std::uint32_t>(lowest)};
+  std::array<int, Manifold::kMaxPoints> chosen;
+  // A handful is taken as it is, without the lowest's copy.
+  const int skip = count <= Manifold::kMaxPoints + 1 ? 1 : 0;
+  const int num_chosen = ChooseFour(points.data() + skip, count - skip, &chosen);
+  for (int k = 0; k < num_chosen; ++k) {
+    const PlanarPoint& point = points[skip + chosen[k]];
+    plane.Add(plane.p_AQ + plane.R_AQ * vertices[point.feature], point.feature, manifold);
+  }
 }
 
 }  // namespace
@@ -117,7 +127,7 @@ FaceOutcome CollideWithBoxFace(const PlacedConvex& a, const PlacedConvex& q, dou
     const double extent = plane.R_AQ.row(axis).cwiseAbs().dot(q.convex->half);
     const double center = std::abs(plane.p_AQ[axis]);
     if (center - extent - half[axis] > margin) return FaceOutcome::kApart;
-    if (center + extent <= half[axis]) {
+    if (center + extent <= half[axis] + kMinOverlap) {
       ++num_inside;
     } else {
       plane.i = axis;

@@ -14,11 +14,17 @@ constexpr double kCorrectionSlop = 1e-6;     // [m]
 // Slower impacts do not bounce [m/s].
 constexpr double kMinBounceSpeed = 0.2;
 
+// The larger eigenvalue of the symmetric 2 x 2 matrix (a, b; b, c).
+inline double LargerEigenvalue(double a, double b, double c) {
+  const double difference = 0.5 * (a - c);
+  return 0.5 * (a + c) + std::sqrt(difference * difference + b * b);
+}
+
 // Rows normal, tangent 1, tangent 2 of point p_W on one body. frame_P holds the columns tangent 1,
 // tangent 2, normal in the body's principal axes.
-void SetJacobian(const BodyKernel& kernel, const BodyMotion& motion, const Matrix3& frame_W,
-                 const Matrix3& frame_P, const Vector3& p_W, double sign,
-                 std::array<Vector6, 3>* J) {
+inline void SetJacobian(const BodyKernel& kernel, const BodyMotion& motion, const Matrix3& frame_W,
+                        const Matrix3& frame_P, const Vector3& p_W, double sign,
+                        std::array<Vector6, 3>* J) {
   const Vector3 r_P = motion.R_WP.transpose() * (p_W - motion.p_WBcm);
   constexpr std::array<int, 3> kColumn = {2, 0, 1};
   const double linear = sign * kernel.inv_sqrt_mass;
@@ -29,10 +35,27 @@ void SetJacobian(const BodyKernel& kernel, const BodyMotion& motion, const Matri
   }
 }
 
-// 1 / the larger eigenvalue of the symmetric 2 x 2 matrix (a, b; b, c).
-double InvLargerEigenvalue(double a, double b, double c) {
-  const double mean = 0.5 * (a + c), difference = 0.5 * (a - c);
-  return 1.0 / (mean + std::sqrt(difference * difference + b * b));
+// The effective masses of a point from its Jacobian. The rows' linear parts are orthogonal, so only
+// their angular parts couple.
+inline void SetEffectiveMasses(double inv_mass_sum, PointRows* row) {
+  const auto K = [row](int i, int j) {
+    double k = row->J_first[i].tail<3>().dot(row->J_first[j].tail<3>());
+    if (row->second >= 0) k += row->J_second[i].tail<3>().dot(row->J_second[j].tail<3>());
+    return k;
+  };
+  const double k_nn = inv_mass_sum + K(0, 0);
+  const double k_11 = inv_mass_sum + K(1, 1), k_22 = inv_mass_sum + K(2, 2), k_12 = K(1, 2);
+  row->K_n1 = K(0, 1);
+  row->K_n2 = K(0, 2);
+  const double determinant = k_11 * k_22 - k_12 * k_12;
+  const double larger = LargerEigenvalue(k_11, k_12, k_22);
+  const double inv_all = 1.0 / (k_nn * determinant * larger);  // one division for all three
+  row->inv_K_nn = inv_all * determinant * larger;
+  const double inv_determinant = inv_all * k_nn * larger;
+  row->inv_K_11 = k_22 * inv_determinant;
+  row->inv_K_12 = -k_12 * inv_determinant;
+  row->inv_K_22 = k_11 * inv_determinant;
+  row->inv_K_tt_max = inv_all * k_nn * determinant;
 }
 
 // Scales (a, b) back onto the circle of radius `limit` if it lies outside.
@@ -48,16 +71,17 @@ void ProjectOnCircle(double limit, double* a, double* b) {
 inline double SweepPoint(PointRows& row, Vector6* y) {
   Vector6& y1 = y[row.first];
   double v_n = row.bias + row.J_first[0].dot(y1);
-  double v_1 = row.J_first[1].dot(y1);
-  double v_2 = row.J_first[2].dot(y1);
+  if (row.second >= 0) v_n += row.J_second[0].dot(y[row.second]);
+  const double lambda_n = std::max(0.0, row.lambda_n - v_n * row.inv_K_nn);
+  const double d_n = lambda_n - row.lambda_n;
+  if (lambda_n == 0.0 && d_n == 0.0) return 0.0;  // apart, and was before
+
+  double v_1 = row.J_first[1].dot(y1), v_2 = row.J_first[2].dot(y1);
   if (row.second >= 0) {
     const Vector6& y2 = y[row.second];
-    v_n += row.J_second[0].dot(y2);
     v_1 += row.J_second[1].dot(y2);
     v_2 += row.J_second[2].dot(y2);
   }
-  const double lambda_n = std::max(0.0, row.lambda_n - v_n * row.inv_K_nn);
-  const double d_n = lambda_n - row.lambda_n;
   v_1 += row.K_n1 * d_n;
   v_2 += row.K_n2 * d_n;
   // Sticking solves the tangential block exactly. Sliding steps along the slip velocity with one
@@ -78,7 +102,7 @@ inline double SweepPoint(PointRows& row, Vector6* y) {
   if (row.second >= 0) {
     y[row.second] += row.J_second[0] * d_n + row.J_second[1] * d_1 + row.J_second[2] * d_2;
   }
-  return std::max({std::abs(d_n), std::abs(d_1), std::abs(d_2)});
+  return std::max(std::abs(d_n), std::max(std::abs(d_1), std::abs(d_2)));
 }
 
 // One Gauss-Seidel update of a finger. The spring's impulse is cut to the friction cone, then to
@@ -154,23 +178,29 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
     const double sign = a_moves ? -1.0 : 1.0;
     const int second = a_moves ? contact.movable_b : -1;
     const Matrix3 frame_first = motions[first].R_WP.transpose() * frames_[c];
-    Matrix3 frame_second;
+    Matrix3 frame_second = Matrix3::Zero();
     if (second >= 0) frame_second = motions[second].R_WP.transpose() * frames_[c];
     while (cached < cache.size() && (cache[cached].key >> 20) < (contact.key >> 20)) ++cached;
+    const double inv_mass_first = 1.0 / kernels[first].mass;
+    const double inv_mass_second = second >= 0 ? 1.0 / kernels[second].mass : 0.0;
     for (int k = 0; k < contact.manifold.size; ++k) {
       const ManifoldPoint& point = contact.manifold.points[k];
       PointRows& row = points_.emplace_back();
       row.first = first;
       row.second = second;
+      row.contact = static_cast<int>(c);
+      row.point = k;
+      row.friction = contact.friction;
+      row.phi = point.phi;
+      row.inv_mass = std::max(inv_mass_first, inv_mass_second);
       SetJacobian(kernels[first], motions[first], frames_[c], frame_first, point.p_W, sign,
                   &row.J_first);
-      row.inv_mass = 1.0 / kernels[first].mass;
       if (second >= 0) {
         SetJacobian(kernels[second], motions[second], frames_[c], frame_second, point.p_W, 1.0,
                     &row.J_second);
-        row.inv_mass = std::max(row.inv_mass, 1.0 / kernels[second].mass);
       }
-      AddPoint(config, contact, static_cast<int>(c), k);
+      SetEffectiveMasses(inv_mass_first + inv_mass_second, &row);
+      row.bias = CalcBias(config, row);
       const Vector3* impulse_W = FindImpulse(cache, cached, contact.key + point.feature);
       if (impulse_W != nullptr) {
         row.lambda_n = std::max(0.0, frames_[c].col(2).dot(*impulse_W));
@@ -191,36 +221,15 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
   }
 }
 
-// The last row's gap, friction and effective masses, from its Jacobian.
-void ContactSolver::AddPoint(const StepConfig& config, const Contact& contact, int contact_index,
-                             int point) {
-  PointRows& row = points_.back();
-  row.contact = contact_index;
-  row.point = point;
-  row.friction = contact.friction;
-  row.phi = contact.manifold.points[point].phi;
-  row.bias = std::max(0.0, row.phi) / config.dt;
+// How fast a point may approach: so that it just closes its gap in this step; or, where it bounces,
+// minus the speed it leaves with.
+double ContactSolver::CalcBias(const StepConfig& config, const PointRows& row) const {
   if (config.restitution > 0.0) {
     double v_n = row.J_first[0].dot(y_[row.first]);
     if (row.second >= 0) v_n += row.J_second[0].dot(y_[row.second]);
-    if (v_n < -kMinBounceSpeed && row.phi + config.dt * v_n < 0.0) {
-      row.bias = config.restitution * v_n;
-    }
+    if (v_n < -kMinBounceSpeed && row.phi + config.dt * v_n < 0.0) return config.restitution * v_n;
   }
-  const auto K = [&row](int i, int j) {
-    double k = row.J_first[i].dot(row.J_first[j]);
-    if (row.second >= 0) k += row.J_second[i].dot(row.J_second[j]);
-    return k;
-  };
-  row.inv_K_nn = 1.0 / K(0, 0);
-  row.K_n1 = K(0, 1);
-  row.K_n2 = K(0, 2);
-  const double k_11 = K(1, 1), k_12 = K(1, 2), k_22 = K(2, 2);
-  const double inv_det = 1.0 / (k_11 * k_22 - k_12 * k_12);
-  row.inv_K_11 = k_22 * inv_det;
-  row.inv_K_12 = -k_12 * inv_det;
-  row.inv_K_22 = k_11 * inv_det;
-  row.inv_K_tt_max = InvLargerEigenvalue(k_11, k_12, k_22);
+  return row.phi > 0.0 ? row.phi / config.dt : 0.0;
 }
 
 void ContactSolver::AddFinger(const BodyKernel& kernel, const BodyMotion& motion,
@@ -237,7 +246,7 @@ void ContactSolver::AddFinger(const BodyKernel& kernel, const BodyMotion& motion
     finger.K(i, i) += finger.gamma;
   }
   finger.inv_K = finger.K.inverse();
-  finger.inv_K_tt_max = InvLargerEigenvalue(finger.K(1, 1), finger.K(1, 2), finger.K(2, 2));
+  finger.inv_K_tt_max = 1.0 / LargerEigenvalue(finger.K(1, 1), finger.K(1, 2), finger.K(2, 2));
   finger.inv_K_max = 1.0 / finger.K.norm();  // the Frobenius norm bounds the largest eigenvalue
   finger.inv_mass = 1.0 / kernel.mass;
   y_[0] += finger.J[0] * finger.lambda[0] + finger.J[1] * finger.lambda[1] +
@@ -247,15 +256,20 @@ void ContactSolver::AddFinger(const BodyKernel& kernel, const BodyMotion& motion
 
 void ContactSolver::Solve(const StepConfig& config) {
   const int max_sweeps = y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many;
+  // On one body, sweeping to and fro converges faster. Along a row of bodies it does not: a push
+  // travels in the order of the pairs.
+  const bool alternate = y_.size() == 1;
   bool overlap = false;
   for (const PointRows& row : points_) overlap = overlap || row.phi < -kCorrectionSlop;
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     double change = 0.0;
-    for (PointRows& row : points_) {
-      change = std::max(change, SweepPoint(row, y_.data()) * row.inv_mass);
-    }
     for (FingerRows& row : fingers_) {
       change = std::max(change, SweepFinger(row, y_.data()) * row.inv_mass);
+    }
+    const bool backward = alternate && sweep % 2 == 1;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      PointRows& row = points_[backward ? points_.size() - 1 - i : i];
+      change = std::max(change, SweepPoint(row, y_.data()) * row.inv_mass);
     }
     if (change < config.tolerance) break;
   }

@@ -103,7 +103,7 @@ class ContactSolver {
                     std::vector<WorldState::CachedImpulse>* cache) const;
 
  private:
-  void AddPoint(const StepConfig& config, const Contact& contact, int contact_index, int point);
+  double CalcBias(const StepConfig& config, const PointRows& row) const;
   void CorrectPositions(const StepConfig& config, int max_sweeps);
 
   std::vector<Vector6> y_, z_;

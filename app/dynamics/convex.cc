@@ -1,64 +1,58 @@
 #include "app/dynamics/convex.h"
 
-#include <utility>
 #include <variant>
 
+#include "app/core/check.h"
 #include "app/dynamics/polytope.h"
+#include "app/geometry/hull.h"
 
 namespace pregrasp {
 namespace {
 
+// A piece as contact generation wants it, from one of DecomposeConvex.
 struct PieceBuilder {
   RigidTransform X_BP;
-  std::vector<Convex>* pieces;
 
-  void operator()(const Box& box) const {
-    Convex convex;
-    convex.kind = ConvexKind::kBox;
-    convex.half = 0.5 * box.size;
+  Convex operator()(const Box& box) const {
+    Convex convex = Make(ConvexKind::kBox, 0.5 * box.size);
     convex.polytope = std::make_shared<Polytope>(MakeBoxPolytope(convex.half));
-    Add(convex);
+    return convex;
   }
-  void operator()(const Cylinder& cylinder) const {
-    Convex convex;
-    convex.kind = ConvexKind::kCylinder;
-    convex.radius = cylinder.radius;
-    convex.half_height = 0.5 * cylinder.height;
-    convex.half = Vector3(convex.radius, convex.radius, convex.half_height);
-    Add(convex);
+  Convex operator()(const Cylinder& cylinder) const {
+    const double r = cylinder.radius, half_height = 0.5 * cylinder.height;
+    return MakeRound(ConvexKind::kCylinder, r, half_height, Vector3(r, r, half_height));
   }
-  void operator()(const Capsule& capsule) const {
-    Convex convex;
-    convex.kind = ConvexKind::kCapsule;
-    convex.radius = capsule.radius;
-    convex.half_height = 0.5 * capsule.height;
-    convex.half = Vector3(convex.radius, convex.radius, convex.half_height + convex.radius);
-    Add(convex);
+  Convex operator()(const Capsule& capsule) const {
+    const double r = capsule.radius, half_height = 0.5 * capsule.height;
+    return MakeRound(ConvexKind::kCapsule, r, half_height, Vector3(r, r, half_height + r));
   }
-  void operator()(const Sphere& sphere) const { (*this)(Capsule{sphere.radius, 0.0}); }
-  void operator()(const Mesh& mesh) const { AddHull(mesh.mesh); }
-  void operator()(const Cloud& cloud) const { AddHull(cloud.mesh); }
-  void operator()(const Union& whole) const {
-    for (const PlacedShape& part : whole.parts) {
-      std::visit(PieceBuilder{X_BP * part.X_BP, pieces}, part.shape);
-    }
-  }
-
-  void AddHull(const TriangleMesh& hull) const {
-    const Vector3 low = hull.V.colwise().minCoeff(), high = hull.V.colwise().maxCoeff();
+  Convex operator()(const Sphere& sphere) const { return (*this)(Capsule{sphere.radius, 0.0}); }
+  Convex operator()(const Mesh& mesh) const {
+    const Vector3 low = mesh.mesh.V.colwise().minCoeff(), high = mesh.mesh.V.colwise().maxCoeff();
     const Vector3 center = 0.5 * (low + high);
-    TriangleMesh centered = hull;
+    TriangleMesh centered = mesh.mesh;
     centered.V.rowwise() -= center.transpose();
-    Convex convex;
-    convex.kind = ConvexKind::kPolytope;
-    convex.half = 0.5 * (high - low);
+    Convex convex = Make(ConvexKind::kPolytope, 0.5 * (high - low));
+    convex.X_BP = X_BP * Eigen::Translation3d(center);
     convex.polytope = std::make_shared<Polytope>(MakePolytope(centered));
-    PieceBuilder{X_BP * Eigen::Translation3d(center), pieces}.Add(convex);
+    return convex;
   }
+  // DecomposeConvex turns these into the others.
+  Convex operator()(const Cloud&) const { PREGRASP_CHECK(false); }
+  Convex operator()(const Union&) const { PREGRASP_CHECK(false); }
 
-  void Add(Convex convex) const {
+  Convex Make(ConvexKind kind, const Vector3& half) const {
+    Convex convex;
+    convex.kind = kind;
     convex.X_BP = X_BP;
-    pieces->push_back(std::move(convex));
+    convex.half = half;
+    return convex;
+  }
+  Convex MakeRound(ConvexKind kind, double radius, double half_height, const Vector3& half) const {
+    Convex convex = Make(kind, half);
+    convex.radius = radius;
+    convex.half_height = half_height;
+    return convex;
   }
 };
 
@@ -66,7 +60,9 @@ struct PieceBuilder {
 
 std::vector<Convex> BuildConvexPieces(const Shape& shape) {
   std::vector<Convex> pieces;
-  std::visit(PieceBuilder{RigidTransform::Identity(), &pieces}, shape);
+  for (const ConvexPiece& piece : DecomposeConvex(shape)) {
+    pieces.push_back(std::visit(PieceBuilder{piece.X_BP}, piece.shape));
+  }
   return pieces;
 }
 

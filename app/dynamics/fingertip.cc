@@ -68,7 +68,7 @@ void PlaceFinger(const SignedDistance& surface, const RigidTransform& X_WO, cons
 }
 
 FingerRows MakeFingerRows(const FingertipLaw& law, const FingertipState& finger, int index,
-                          const BodyMotion& object, double dt) {
+                          const BodyState& state, const BodyMotion& object, double dt) {
   FingerRows rows;
   rows.finger = index;
   rows.R_WC = FrameFromNormal(object.R_WB * finger.nhat_O);
@@ -86,7 +86,13 @@ FingerRows MakeFingerRows(const FingertipLaw& law, const FingertipState& finger,
       along_rows((finger.p_WTarget - p_WF) * (law.stiffness / (dt * law.stiffness + law.damping)));
   rows.friction = law.friction;
   rows.max_impulse = dt * law.max_force;
-  rows.lambda = ProjectImpulse(along_rows(dt * finger.f_W), rows.friction, rows.max_impulse);
+  if (finger.touching) {
+    // The spring's impulse if the object's point kept its velocity: nearer than the last impulse
+    // while the target moves.
+    const Vector3 v_WC = state.v_WB + state.w_WB.cross(object.R_WB * finger.p_OC);
+    rows.lambda = ProjectImpulse((rows.target - along_rows(v_WC)) / rows.gamma, rows.friction,
+                                 rows.max_impulse);
+  }
   return rows;
 }
 

@@ -22,9 +22,10 @@ struct FingertipLaw {
 void PlaceFinger(const SignedDistance& surface, const RigidTransform& X_WO, const Vector3& p_OC,
                  FingertipState* finger);
 
-/// The finger's contact rows for a step from `object`'s pose. The solver adds the Jacobian.
+/// The finger's contact rows for a step of the object from `state`, whose pose `object` holds too.
+/// The solver adds the Jacobian.
 FingerRows MakeFingerRows(const FingertipLaw& law, const FingertipState& finger, int index,
-                          const BodyMotion& object, double dt);
+                          const BodyState& state, const BodyMotion& object, double dt);
 
 /// Moves the finger to the end of the step: with the object where it sticks, over the surface where
 /// it slips, towards its target where it is free.

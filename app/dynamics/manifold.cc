@@ -1,6 +1,7 @@
 #include "app/dynamics/manifold.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pregrasp {
 namespace {
@@ -9,68 +10,70 @@ namespace {
 constexpr double kDepthTie = 2e-6;
 // Relative difference below which two distances or areas count as equal.
 constexpr double kSizeTie = 1e-6;
+// Twice the area of a triangle that holds nothing [m^2].
+constexpr double kMinArea = 1e-14;
+
+// Twice the signed area of triangle (a, b, c).
+double Area(const PlanarPoint& a, const PlanarPoint& b, const PlanarPoint& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 }  // namespace
 
-void ReduceToFour(const ManifoldPoint* points, int count, Manifold* manifold) {
-  manifold->size = 0;
+int ChooseFour(const PlanarPoint* points, int count,
+               std::array<int, Manifold::kMaxPoints>* chosen) {
   if (count <= Manifold::kMaxPoints) {
-    std::copy_n(points, count, manifold->points.begin());
-    manifold->size = count;
-    return;
+    for (int i = 0; i < count; ++i) (*chosen)[i] = i;
+    return count;
   }
-  const Vector3& n = manifold->nhat_W;
   int first = 0;
   for (int i = 1; i < count; ++i) {
     if (points[i].phi < points[first].phi - kDepthTie) first = i;
   }
-  const Vector3 p0 = points[first].p_W;
-  const auto tangential = [&n](const Vector3& r) -> Vector3 { return r - n * n.dot(r); };
-
+  const PlanarPoint& p0 = points[first];
   int second = -1;
-  double best = 0.0;
+  double farthest = 0.0;
   for (int i = 0; i < count; ++i) {
-    const double distance = tangential(points[i].p_W - p0).squaredNorm();
-    if (distance > best * (1.0 + kSizeTie)) {
-      best = distance;
+    const double dx = points[i].x - p0.x, dy = points[i].y - p0.y;
+    const double distance2 = dx * dx + dy * dy;
+    if (distance2 > farthest * (1.0 + kSizeTie)) {
+      farthest = distance2;
       second = i;
     }
   }
-  manifold->points[manifold->size++] = points[first];
-  if (second < 0) return;
-  manifold->points[manifold->size++] = points[second];
-  const Vector3 p1 = points[second].p_W;
+  (*chosen)[0] = first;
+  if (second < 0) return 1;
+  (*chosen)[1] = second;
+  const PlanarPoint& p1 = points[second];
 
-  // Twice the signed area of (p0, p1, p) seen against the normal.
-  const auto area = [&n](const Vector3& a, const Vector3& b, const Vector3& c) {
-    return n.dot((b - a).cross(c - a));
-  };
   int third = -1;
   double third_area = 0.0;
   for (int i = 0; i < count; ++i) {
-    const double a = area(p0, p1, points[i].p_W);
-    if (std::abs(a) > std::abs(third_area) * (1.0 + kSizeTie) + 1e-14) {
-      third_area = a;
+    const double area = Area(p0, p1, points[i]);
+    if (std::abs(area) > std::abs(third_area) * (1.0 + kSizeTie) + kMinArea) {
+      third_area = area;
       third = i;
     }
   }
-  if (third < 0) return;
-  manifold->points[manifold->size++] = points[third];
-  const Vector3 p2 = points[third].p_W;
+  if (third < 0) return 2;
+  (*chosen)[2] = third;
+  const PlanarPoint& p2 = points[third];
 
   const double sign = third_area > 0.0 ? 1.0 : -1.0;
   int fourth = -1;
-  double fourth_area = 1e-14;
+  double fourth_area = kMinArea;
   for (int i = 0; i < count; ++i) {
-    const Vector3& p = points[i].p_W;
+    const PlanarPoint& p = points[i];
     const double outside =
-        std::max({-sign * area(p0, p1, p), -sign * area(p1, p2, p), -sign * area(p2, p0, p)});
+        -std::min({sign * Area(p0, p1, p), sign * Area(p1, p2, p), sign * Area(p2, p0, p)});
     if (outside > fourth_area * (1.0 + kSizeTie)) {
       fourth_area = outside;
       fourth = i;
     }
   }
-  if (fourth >= 0) manifold->points[manifold->size++] = points[fourth];
+  if (fourth < 0) return 3;
+  (*chosen)[3] = fourth;
+  return 4;
 }
 
 }  // namespace pregrasp

@@ -28,9 +28,17 @@ struct Manifold {
   }
 };
 
+/// A point of a manifold that may still be left out: its place in the tangent plane.
+struct PlanarPoint {
+  double x = 0.0, y = 0.0;  ///< [m]
+  double phi = 0.0;
+  std::uint32_t feature = 0;
+};
+
 /// Chooses at most four of `count` points that stand for all: the deepest, the farthest from it,
 /// the one that makes the largest triangle, and the one farthest outside that triangle. Ties within
 /// a tolerance go to the lower index, so that the choice does not flicker.
-void ReduceToFour(const ManifoldPoint* points, int count, Manifold* manifold);
+/// @returns how many; their indices are in `chosen`.
+int ChooseFour(const PlanarPoint* points, int count, std::array<int, Manifold::kMaxPoints>* chosen);
 
 }  // namespace pregrasp

@@ -361,18 +361,25 @@ class Overlap {
   }
 
   OverlapResult Report(double margin, Manifold* manifold) {
-    std::array<ManifoldPoint, kMaxCandidates> points;
+    std::array<PlanarPoint, kMaxCandidates> points;
+    std::array<int, kMaxCandidates> index;
     int near = 0;
     for (int i = 0; i < count_; ++i) {
       const Candidate& c = candidates_[i];
       const double phi = c.height_b - c.height_a;
       if (phi > margin) continue;
-      points[near++] = {origin_ + R_WT_ * Vector3(c.x, c.y, 0.5 * (c.height_a + c.height_b)), phi,
-                        c.id};
+      index[near] = i;
+      points[near++] = {c.x, c.y, phi, c.id};
     }
     if (near == 0) return OverlapResult::kNone;
     manifold->nhat_W = R_WT_.col(2);
-    ReduceToFour(points.data(), near, manifold);
+    std::array<int, Manifold::kMaxPoints> chosen;
+    const int num_chosen = ChooseFour(points.data(), near, &chosen);
+    for (int n = 0; n < num_chosen; ++n) {
+      const Candidate& c = candidates_[index[chosen[n]]];
+      manifold->Add(origin_ + R_WT_ * Vector3(c.x, c.y, 0.5 * (c.height_a + c.height_b)),
+                    points[chosen[n]].phi, c.id);
+    }
     return OverlapResult::kTouching;
   }
 

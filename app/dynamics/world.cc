@@ -140,9 +140,9 @@ struct World::Impl {
     scratch->solver.SetContacts(config, kernels, scratch->motions, scratch->contacts, state.cache);
     for (int f = 0; f < kNumFingers; ++f) {
       if (!state.fingers[f].on) continue;
-      scratch->solver.AddFinger(
-          kernels[0], scratch->motions[0],
-          MakeFingerRows(law, state.fingers[f], f, scratch->motions[0], config.dt));
+      scratch->solver.AddFinger(kernels[0], scratch->motions[0],
+                                MakeFingerRows(law, state.fingers[f], f, state.bodies[0],
+                                               scratch->motions[0], config.dt));
     }
     scratch->solver.Solve(config);
   }

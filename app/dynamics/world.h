@@ -15,7 +15,7 @@ namespace pregrasp {
 /// `tolerance`.
 struct StepConfig {
   double dt = 1.0 / 240.0;  ///< [s]
-  double tolerance = 1e-4;  ///< largest change of a contact's impulse over the body's mass at which
+  double tolerance = 1e-5;  ///< largest change of a contact's impulse over the body's mass at which
                             ///< sweeps stop [m/s]
   int max_sweeps = 20;      ///< projected Gauss-Seidel sweeps for one movable body
   int max_sweeps_many = 50;  ///< the same for more than two movable bodies

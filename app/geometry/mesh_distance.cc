@@ -10,7 +10,6 @@ namespace pregrasp {
 namespace {
 
 constexpr int kLeafSize = 4;
-constexpr int kMaxDepth = 60;
 
 Vector3 Normalized(const Vector3& v) {
   const double length = v.norm();
@@ -240,8 +239,7 @@ NearestPoint MeshDistance::FindNearest(const Vector3& p_B) const {
     double squared;
     int child, count;
   };
-  // At most one entry waits at each level of the tree.
-  std::array<Entry, 2 * kMaxDepth + 64> stack;  // NOLINT: filled before it is read
+  std::array<Entry, kStackSize> stack;  // NOLINT: filled before it is read
   int top = 0;
   stack[top++] = {0.0, 0, 0};
   Search search;

@@ -31,6 +31,12 @@ class MeshDistance {
   DistanceSample CalcWithGradient(const Vector3& p_B) const;
   NearestPoint FindNearest(const Vector3& p_B) const;
 
+  /// For queries other than a point's: visits the triangles that may have a value below `best`,
+  /// those in near boxes first. `in_box(low, high)` returns a lower bound of the value in a box,
+  /// `visit(a, ab, ac, nhat)` the least value so far; nhat is zero for a triangle without area.
+  template <typename InBox, typename Visit>
+  void Walk(double best, const InBox& in_box, const Visit& visit) const;
+
   const AlignedBox& bounds() const { return bounds_; }
 
  private:
@@ -57,6 +63,9 @@ class MeshDistance {
   void BuildPseudonormals(const TriangleMesh& mesh);
   int BuildNode(std::vector<Item>& items, int begin, int end, int depth);
   void BuildChild(std::vector<Item>& items, int begin, int end, int node, int side, int depth);
+  static constexpr int kMaxDepth = 60;
+  // At most one entry waits at each level of the tree.
+  static constexpr int kStackSize = 2 * kMaxDepth + 64;
   static Hit NearestOnTriangle(const Triangle& t, const Vector3& p_B);
   static Hit NearestOnEdges(const Triangle& t, const Vector3& p_B);
   void SearchLeaf(int first, int count, const Vector3& p_B, Search& search) const;
@@ -66,5 +75,34 @@ class MeshDistance {
   std::vector<Triangle> triangles_;                      // in leaf order
   std::vector<std::array<Vector3, 7>> feature_normals_;  // by triangle, in leaf order
 };
+
+template <typename InBox, typename Visit>
+void MeshDistance::Walk(double best, const InBox& in_box, const Visit& visit) const {
+  struct Entry {
+    double least;
+    int child, count;
+  };
+  std::array<Entry, kStackSize> stack;  // NOLINT: filled before it is read
+  int top = 0;
+  stack[top++] = {-std::numeric_limits<double>::infinity(), 0, 0};
+  while (top > 0) {
+    const Entry entry = stack[--top];
+    if (entry.least >= best) continue;
+    if (entry.child < 0) {
+      for (int i = ~entry.child; i < ~entry.child + entry.count; ++i) {
+        const Triangle& t = triangles_[i];
+        best = visit(t.a, t.ab, t.ac, t.nhat);
+      }
+      continue;
+    }
+    const Node& node = nodes_[entry.child];
+    const double least0 = in_box(node.low[0], node.high[0]);
+    const double least1 = node.count[1] > 0 ? in_box(node.low[1], node.high[1])
+                                            : std::numeric_limits<double>::infinity();
+    const int near = least1 < least0 ? 1 : 0;
+    stack[top++] = {near == 0 ? least1 : least0, node.child[1 - near], node.count[1 - near]};
+    stack[top++] = {near == 0 ? least0 : least1, node.child[near], node.count[near]};
+  }
+}
 
 }  // namespace pregrasp

@@ -23,7 +23,7 @@ struct Part {
   Geometry geometry;
   int body;
   RigidTransform X_BP;
-  std::shared_ptr<const SignedDistance> inside;  // for a mesh
+  std::shared_ptr<const MeshDistance> inside;  // for a mesh
 };
 
 Geometry MakeMesh(const TriangleMesh& mesh) {
@@ -63,8 +63,10 @@ void AddParts(const Shape& shape, const RigidTransform& X_BP, int body, std::vec
   }
   Part part{std::visit(GeometryMaker{}, shape), body, X_BP, nullptr};
   part.geometry->computeLocalAABB();
-  if (std::holds_alternative<Mesh>(shape) || std::holds_alternative<Cloud>(shape)) {
-    part.inside = std::make_shared<const SignedDistance>(shape);
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+    part.inside = std::make_shared<const MeshDistance>(mesh->mesh);
+  } else if (const auto* cloud = std::get_if<Cloud>(&shape)) {
+    part.inside = std::make_shared<const MeshDistance>(cloud->mesh);
   }
   parts->push_back(std::move(part));
 }

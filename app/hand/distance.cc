@@ -6,8 +6,6 @@
 namespace pregrasp {
 namespace {
 
-constexpr double kMeshSpacing = 2e-3;  // [m], along a capsule's axis
-
 // The radius of a sphere about the shape's own origin.
 double BoundOf(const Box& box) { return 0.5 * box.size.norm(); }
 double BoundOf(const Cylinder& c) { return std::hypot(c.radius, 0.5 * c.height); }
@@ -21,10 +19,9 @@ SegmentSample FindLeastOf(const Primitive& primitive, const Vector3& a, const Ve
                          a, b);
 }
 
-SegmentSample FindLeastOf(const std::shared_ptr<const SignedDistance>& surface, const Vector3& a,
+SegmentSample FindLeastOf(const std::shared_ptr<const MeshDistance>& mesh, const Vector3& a,
                           const Vector3& b, double cutoff) {
-  return FindLeast([&](const Vector3& p) { return surface->CalcWithGradient(p); }, a, b,
-                   kMeshSpacing, cutoff);
+  return FindLeastOnMesh(*mesh, a, b, cutoff);
 }
 
 // At most the distance, for culling.
@@ -33,10 +30,8 @@ double DistanceAt(const Primitive& primitive, const Vector3& p) {
   return CalcDistance(primitive, p);
 }
 
-// Outside its box the distance to the box will do.
-double DistanceAt(const std::shared_ptr<const SignedDistance>& surface, const Vector3& p) {
-  const double to_box = surface->bounds().exteriorDistance(p);
-  return to_box > 0.0 ? to_box : surface->Calc(p);
+double DistanceAt(const std::shared_ptr<const MeshDistance>& mesh, const Vector3& p) {
+  return mesh->bounds().exteriorDistance(p);
 }
 
 }  // namespace
@@ -82,10 +77,12 @@ void HandObstacles::AddParts(const Shape& shape, const RigidTransform& X_BP, int
   } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     set(*sphere);
   } else {
-    auto surface = std::make_shared<const SignedDistance>(shape);
-    part.p_PCenter = surface->bounds().center();
-    part.bound = 0.5 * surface->bounds().diagonal().norm();
-    part.shape = std::move(surface);
+    const auto* mesh = std::get_if<Mesh>(&shape);
+    const TriangleMesh& surface = mesh != nullptr ? mesh->mesh : std::get<Cloud>(shape).mesh;
+    auto distance = std::make_shared<const MeshDistance>(surface);
+    part.p_PCenter = distance->bounds().center();
+    part.bound = 0.5 * distance->bounds().diagonal().norm();
+    part.shape = std::move(distance);
   }
   parts_.push_back(std::move(part));
 }

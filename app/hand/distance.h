@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "app/geometry/signed_distance.h"
+#include "app/geometry/mesh_distance.h"
 #include "app/hand/hand_kinematics.h"
 #include "app/scene/shape.h"
 
@@ -46,13 +46,11 @@ struct TouchRule {
   double depth = 1e-3;  ///< [m]
 };
 
-/// Bodies prepared for distances to hand capsules: the least of the body's signed distance along
-/// the capsule's axis, less the radius. Exact for boxes, cylinders, capsules and spheres; the parts
-/// of a union one by one; along a mesh's signed distance, which has no such form, in steps of 2 mm
-/// at most and then refined, so that a thin feature between two steps may be missed by 1 mm (a
-/// certificate by FCL sees it). Inside a body it is the depth of the deepest axis point, not the
-/// shortest way out. Immutable, safe to share between threads. Body 0 is the object, the others are
-/// environment.
+/// Bodies prepared for distances to hand capsules: the least of a body's signed distance along the
+/// capsule's axis, less the radius. Exact for boxes, cylinders, capsules, spheres and, where the
+/// capsule's axis is outside, for meshes; the parts of a union one by one. Where an axis is inside
+/// a body, the depth of its deepest point, which is not the shortest way out. Immutable, safe to
+/// share between threads. Body 0 is the object, the others are environment.
 class HandObstacles {
  public:
   explicit HandObstacles(const std::vector<const Shape*>& shapes);
@@ -70,7 +68,7 @@ class HandObstacles {
 
  private:
   struct Part {
-    std::variant<Box, Cylinder, Capsule, Sphere, std::shared_ptr<const SignedDistance>> shape;
+    std::variant<Box, Cylinder, Capsule, Sphere, std::shared_ptr<const MeshDistance>> shape;
     int body = 0;
     RigidTransform X_BP = RigidTransform::Identity();
     Vector3 p_PCenter = Vector3::Zero();  ///< of a sphere around the part

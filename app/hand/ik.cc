@@ -17,7 +17,7 @@ using internal::IkTerms;
 
 // SLSQP is worth its time where least squares ends this near to a solution: the square root of its
 // residual sum, in millimetres. Farther away a fresh start is cheaper.
-constexpr double kStallReach = 12.0;
+constexpr double kStallReach = 3.0;
 // Starts spent on telling why there is no solution.
 constexpr int kReasonStarts = 3;
 
@@ -83,9 +83,9 @@ class Searcher {
     IkMethod method = IkMethod::kLeastSquares;
     const bool exact = internal::IsSolution(terms_, point_, config.tip_target);
     if (!exact && config.slsqp && point_.task_cost < kStallReach * kStallReach) {
-      const double before = point_.task_cost;
-      search->evaluations += internal::SolveSlsqp(terms_, &point_, &scratch_);
-      if (point_.task_cost < before) method = IkMethod::kSlsqp;
+      bool improved = false;
+      search->evaluations += internal::SolveSlsqp(terms_, &point_, &scratch_, &improved);
+      if (improved) method = IkMethod::kSlsqp;
     }
     bool solved = internal::IsSolution(terms_, point_, config.tip_tolerance);
     if (solved && certificate_ != nullptr &&

@@ -9,6 +9,7 @@
 #include "app/core/rng.h"
 #include "app/hand/distance.h"
 #include "app/hand/hand_model.h"
+#include "app/scene/scene.h"
 
 namespace pregrasp {
 

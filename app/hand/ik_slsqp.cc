@@ -15,6 +15,8 @@ namespace {
 // variables.
 constexpr double kLengthUnit = 0.01;  // [m]
 constexpr double kConeMargin = 1e-3;  // of the cosine
+// Of the buffer that least squares asks for: an exact solution may not leave room for more.
+constexpr double kClearanceShare = 0.1;
 // One inequality per capsule (its least distance to anything), one for touches, one per cone:
 // grouping by minima keeps SLSQP's quadratic programs small.
 constexpr int kMaxInequalities = kMaxHandCapsules + 1 + kNumFingers;
@@ -102,7 +104,8 @@ class Program {
       if (least[i] != nullptr) {
         const double required = least[i]->touch ? -terms_.touch.depth : terms_.config.min_clearance;
         values[i] =
-            (required + 0.5 * terms_.config.clearance_buffer - least[i]->distance) / kLengthUnit;
+            (required + kClearanceShare * terms_.config.clearance_buffer - least[i]->distance) /
+            kLengthUnit;
         AddDistanceGradient(terms_.hand, point_->pose, *least[i], -1.0 / kLengthUnit, &row);
       }
       if (gradients != nullptr) Store(row, gradients + i * kNumHandDofs);
@@ -159,7 +162,8 @@ void Inequalities(unsigned /*m*/, double* values, unsigned /*n*/, const double* 
 
 }  // namespace
 
-int SolveSlsqp(const IkTerms& terms, IkPoint* point, IkPoint* scratch) {
+int SolveSlsqp(const IkTerms& terms, IkPoint* point, IkPoint* scratch, bool* improved) {
+  *improved = false;
   Program program(terms, *point, scratch);
   const HandVector units = HandUnits();
   const HandJoints& q = point->configuration.q;
@@ -201,6 +205,7 @@ int SolveSlsqp(const IkTerms& terms, IkPoint* point, IkPoint* scratch) {
   if (IsSolution(terms, *scratch, terms.config.tip_target) ||
       scratch->task_cost < point->task_cost) {
     std::swap(*point, *scratch);
+    *improved = true;
   }
   return program.evaluations();
 }

@@ -99,10 +99,10 @@ bool IsSolution(const IkTerms& terms, const IkPoint& point, double tip_error);
 int SolveLeastSquares(const IkTerms& terms, IkPoint* point, IkPoint* scratch);
 
 /// NLopt's SLSQP from `point`: the nearest configuration (in HandUnits) that puts the tips on their
-/// targets under the cones, clearances and limits. Replaces `point` if it ends nearer to a
-/// solution.
-/// @return evaluations used.
-int SolveSlsqp(const IkTerms& terms, IkPoint* point, IkPoint* scratch);
+/// targets under the cones, clearances and limits. Replaces `point` if that `improved` it: a
+/// solution with tips within config.tip_target, or at least nearer to one. @return evaluations
+/// used.
+int SolveSlsqp(const IkTerms& terms, IkPoint* point, IkPoint* scratch, bool* improved);
 
 /// Within a few centimetres and a third of a radian of `centre`.
 HandConfiguration SampleNear(const HandModel& hand, const HandConfiguration& centre, Rng& rng);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/geometry/signed_distance.h"
+#include "app/geometry/mesh_distance.h"
 
 namespace pregrasp {
 
@@ -63,11 +63,10 @@ SegmentSample FindLeastConvex(const Distance& distance, const Vector3& a, const 
 
 /// The same for any signed distance, which changes by at most 1 m per metre: steps of `spacing`, or
 /// longer where the distance rules out a smaller value; then refined around the best step. Too
-/// large by at most spacing / 2, and only where the body has a feature narrower than spacing. A
-/// least value above `cutoff` is only known to be above it.
+/// large by at most spacing / 2, and only where the body has a feature narrower than spacing.
 template <typename Distance>
-SegmentSample FindLeast(const Distance& distance, const Vector3& a, const Vector3& b,
-                        double spacing, double cutoff) {
+SegmentSample FindLeastAnywhere(const Distance& distance, const Vector3& a, const Vector3& b,
+                                double spacing) {
   const Vector3 ab = b - a;
   const double length = ab.norm();
   SegmentSample best{0.0, distance(a)};
@@ -79,7 +78,7 @@ SegmentSample FindLeast(const Distance& distance, const Vector3& a, const Vector
   double after = std::min(1.0, step);
   while (t < 1.0) {
     const double last = t;
-    t = std::min(1.0, t + std::max(step, (phi - std::min(cutoff, best.sample.phi)) / length));
+    t = std::min(1.0, t + std::max(step, (phi - best.sample.phi) / length));
     const DistanceSample sample = distance(a + t * ab);
     phi = sample.phi;
     if (best.t == last) after = t;
@@ -89,7 +88,6 @@ SegmentSample FindLeast(const Distance& distance, const Vector3& a, const Vector
       after = std::min(1.0, t + step);
     }
   }
-  if (best.sample.phi > cutoff + spacing) return best;
   // Downhill from the best step to its neighbour, where the slope must have turned.
   const double slope = best.sample.nhat.dot(ab);
   const double other = slope < 0.0 ? after : before;
@@ -129,5 +127,11 @@ inline void FindNearestOnSegments(const Vector3& a0, const Vector3& a1, const Ve
     *s = std::clamp((uv * *t - uw) / uu, 0.0, 1.0);
   }
 }
+
+/// Least value along the segment from a to b of a mesh's signed distance: exact where the segment
+/// does not meet the surface, by FindLeastAnywhere in steps of 4 mm where it does. A least value
+/// above `cutoff` is only known to be above it.
+SegmentSample FindLeastOnMesh(const MeshDistance& mesh, const Vector3& a, const Vector3& b,
+                              double cutoff);
 
 }  // namespace pregrasp

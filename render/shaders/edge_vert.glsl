@@ -9,6 +9,7 @@ uniform float width;           // [pixels] at 720
 out vec2 v_at;
 out vec3 v_p;
 flat out vec3 v_n;
+flat out float v_outline;      // 1: one of the two faces is turned away
 flat out float v_length;
 flat out float v_width;
 
@@ -18,7 +19,9 @@ void main() {
   vec4 a = clip_from_world * vec4(wp, 1.0), b = clip_from_world * vec4(wq, 1.0);
   float near = tuning.x;
   vec3 to_eye = eye.xyz - wp;
-  bool hidden = dot(wn, to_eye) <= 0.0 && dot(wm, to_eye) <= 0.0;
+  bool n_seen = dot(wn, to_eye) > 0.0, m_seen = dot(wm, to_eye) > 0.0;
+  bool hidden = !n_seen && !m_seen;
+  v_outline = n_seen != m_seen ? 1.0 : 0.0;
   if (hidden || (a.w < near && b.w < near)) {
     gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
     return;

@@ -29,7 +29,7 @@ float Shadow(bool wanted, vec3 p, vec3 n) {
   float width = shadow_width[layer], depth = shadow_width[2 + layer];
   float texel = width / tuning.w;
   float receiver = at.z * depth;
-  float most = min(SHADOW_REACH * target.w, 48.0 * texel);
+  float most = clamp(SHADOW_REACH * target.w, 12.0 * texel, 48.0 * texel);
 
   // On a level receiver one look tells most pixels that nothing can be in the way.
   ivec3 cell = ivec3(at.xy * tuning.w / 16.0, layer);
@@ -51,12 +51,14 @@ float Shadow(bool wanted, vec3 p, vec3 n) {
     blockers += weight * gap;
     weights += weight;
   }
-  bool all = weights > search - 0.01;
   // On a steep receiver near blockers drown in the bias of this search: there the narrowest filter
   // looks for them. It needs few taps, as the hardware's comparison is two texels wide by itself.
   bool none = weights == 0.0 && level;
   float radius = weights > 0.0 ? to_light.w * blockers / weights : 0.0;
-  radius = clamp(radius, 1.1 * texel, most);
+  radius = clamp(radius, 1.5 * texel, most);
+  // Blocked all over the search: in full shadow, unless the filter reaches as far as the search does,
+  // whose blockers are 4 texels wider than they should be.
+  bool all = weights > search - 0.01 && radius < most - 6.0 * texel;
   int taps = weights == 0.0 ? 5 : radius < 2.0 * texel ? min(8, SHADOW_TAPS) : SHADOW_TAPS;
 
   bias = 1.02 * texel * steepness + 0.15 * texel;

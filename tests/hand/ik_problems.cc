@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "app/geometry/signed_distance.h"
+
 namespace pregrasp {
 namespace {
 
@@ -153,6 +155,19 @@ class Closer {
     });
   }
 
+  // A point of the object's surface, or near it, seen from `away`.
+  Vector3 SampleSurface(const Vector3& away, Rng& rng) const {
+    const AlignedBox& box = object_.bounds();
+    const Vector3 share(rng.Uniform(-0.5, 0.5), rng.Uniform(-0.5, 0.5), rng.Uniform(-0.5, 0.5));
+    const Vector3 aim =
+        X_WO_ * Vector3(box.center() + rng.Uniform() * share.cwiseProduct(box.sizes()));
+    double reach = 0.4;
+    for (int i = 0; i < 60 && reach > 0.0; ++i) {
+      reach -= object_.Calc(X_WO_.inverse() * (aim + reach * away));
+    }
+    return aim + std::max(0.0, reach) * away;
+  }
+
   DistanceSample TipDistance(const HandConfiguration& configuration, Finger finger,
                              Vector3* p_WT) const {
     HandPose pose;
@@ -217,11 +232,11 @@ class Closer {
   RigidTransform X_WO_;
 };
 
-// The palm over a point near the object, its palmar side (-y) towards it.
-RigidTransform SamplePalm(const RigidTransform& X_WO, Rng& rng) {
+// The palm a few centimetres over a point of the object, its palmar side (-y) towards it.
+RigidTransform SamplePalm(const Closer& closer, Rng& rng) {
   Vector3 away = rng.Direction();
   away.z() = std::abs(away.z());
-  const Vector3 p_WP = X_WO.translation() + rng.Uniform(0.05, 0.15) * away;
+  const Vector3 p_WP = closer.SampleSurface(away, rng) + rng.Uniform(0.012, 0.06) * away;
   const Vector3 z = away.cross(rng.Direction()).normalized();  // fingers run across
   Matrix3 R_WH;
   R_WH.col(1) = away;
@@ -236,7 +251,7 @@ std::optional<SolvableProblem> TryHand(const World& world, const Closer& closer,
                                        Rng& rng) {
   const HandModel& hand = ShadowHand();
   HandConfiguration configuration;
-  configuration.X_WH = SamplePalm(world.X_WB[0], rng);
+  configuration.X_WH = SamplePalm(closer, rng);
   configuration.q = OpenPosture(hand, rng);
   const HandJoints closed = ClosedPosture(hand, configuration.q, rng);
   TouchRule touch;

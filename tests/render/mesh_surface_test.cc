@@ -46,6 +46,15 @@ TEST(ShadedSurfaceTest, VerticesAtOnePlaceCountAsOne) {
             BuildShadedSurface(ball, true).vertices.size());
 }
 
+TEST(ClosedMeshTest, ABallIsClosedAndABallWithAHoleIsNot) {
+  TriangleMesh mesh = BallMesh(0.02);
+  EXPECT_TRUE(IsClosedMesh(mesh));
+  mesh.F.conservativeResize(mesh.F.rows() - 1, 3);
+  EXPECT_FALSE(IsClosedMesh(mesh));
+  EXPECT_FALSE(IsClosedMesh(UnitOpenCone(12)));
+  EXPECT_FALSE(IsClosedMesh(TriangleMesh{}));
+}
+
 TEST(ShadedEdgesTest, ABoxHasTwelveCreasesAndEighteenEdges) {
   EXPECT_EQ(BuildShadedEdges(BoxMesh({1, 1, 1}), true).size(), 12U);
   EXPECT_EQ(BuildShadedEdges(BoxMesh({1, 1, 1}), false).size(), 18U);

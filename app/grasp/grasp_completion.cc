@@ -1,0 +1,104 @@
+#include "app/grasp/grasp_completion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/core/error.h"
+#include "app/core/text.h"
+
+namespace pregrasp {
+namespace {
+
+bool IsFixed(const std::vector<GraspContact>& fixed, Finger finger) {
+  return std::any_of(fixed.begin(), fixed.end(),
+                     [&](const GraspContact& contact) { return contact.finger == finger; });
+}
+
+std::vector<GraspContact> ProjectGrasp(const GraspWorld& world, const GraspPoints& generated,
+                                       const std::vector<GraspContact>& fixed) {
+  std::vector<GraspContact> contacts = fixed;
+  for (int f = 0; f < kNumFingers; ++f) {
+    const Finger finger = static_cast<Finger>(f);
+    if (IsFixed(fixed, finger)) continue;
+    GraspContact contact;
+    contact.finger = finger;
+    contact.p_OC = world.object().Project(generated[f], &contact.nhat_O);
+    contacts.push_back(contact);
+  }
+  std::sort(contacts.begin(), contacts.end(),
+            [](const GraspContact& a, const GraspContact& b) { return a.finger < b.finger; });
+  return contacts;
+}
+
+// `contacts` with those that are not fixed moved at random by up to `reach` along the surface.
+std::vector<GraspContact> MoveAlongSurface(const GraspWorld& world,
+                                           const std::vector<GraspContact>& contacts,
+                                           const std::vector<GraspContact>& fixed, double reach,
+                                           double max_reach, Rng& rng) {
+  std::vector<GraspContact> moved = contacts;
+  for (GraspContact& contact : moved) {
+    if (IsFixed(fixed, contact.finger)) continue;
+    const Vector3 start = contact.p_OC;
+    const double distance = reach * std::cbrt(rng.Uniform());
+    const Vector3 p_O = start + distance * rng.Direction();
+    GraspContact candidate = contact;
+    candidate.p_OC = world.object().Project(p_O, &candidate.nhat_O);
+    if ((candidate.p_OC - start).norm() <= max_reach) contact = candidate;
+  }
+  return moved;
+}
+
+double LargestMove(const std::vector<GraspContact>& a, const std::vector<GraspContact>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, (a[i].p_OC - b[i].p_OC).norm());
+  }
+  return largest;
+}
+
+bool HasForces(GraspStatus status) {
+  return status != GraspStatus::kNoInternalForces && status != GraspStatus::kWeightNotBalanced &&
+         status != GraspStatus::kTipsTooClose;
+}
+
+}  // namespace
+
+void CompletionConfig::Validate() const {
+  grasp.Validate();
+  if (!(max_refinement >= 0.0 && max_refinement <= 0.1)) {
+    throw InputError("", "max_refinement", "a length from 0 to 0.1 m",
+                     FormatDouble(max_refinement));
+  }
+  if (max_refinements < 0 || max_solves < 0) {
+    throw InputError("", "max_refinements", "no negative count",
+                     std::to_string(std::min(max_refinements, max_solves)));
+  }
+}
+
+CompletedGrasp CompleteGrasp(const GraspWorld& world, const CompletionConfig& config,
+                             const GraspPoints& generated, const std::vector<GraspContact>& fixed,
+                             const std::vector<RigidTransform>& X_WB, const Rng& rng) {
+  CompletedGrasp grasp;
+  grasp.projected = ProjectGrasp(world, generated, fixed);
+  grasp.raw = TestGrasp(world, config.grasp, grasp.projected, X_WB, rng);
+  grasp.result = grasp.raw;
+  if (grasp.raw.feasible()) return grasp;
+  Rng moves = rng;
+  int solves = 0;
+  while (grasp.refinements < config.max_refinements && solves < config.max_solves) {
+    ++grasp.refinements;
+    const double share = static_cast<double>(grasp.refinements) / config.max_refinements;
+    const std::vector<GraspContact> moved = MoveAlongSurface(
+        world, grasp.projected, fixed, share * config.max_refinement, config.max_refinement, moves);
+    const GraspResult result = TestGrasp(world, config.grasp, moved, X_WB, moves);
+    solves += HasForces(result.status);
+    if (result.feasible()) {
+      grasp.result = result;
+      grasp.moved = LargestMove(grasp.projected, moved);
+      break;
+    }
+  }
+  return grasp;
+}
+
+}  // namespace pregrasp
