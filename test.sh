@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# test.sh [--all] [CTEST ARGS]: installs what is missing, builds and runs the tests. --all adds the long tests, the sanitizers and
-# clang-tidy.
+# test.sh [--all] [CTEST ARGS]: installs what is missing, builds and runs the tests. --all adds the long tests, the trainer's,
+# the sanitizers and clang-tidy.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 all=false
@@ -10,7 +10,11 @@ if [[ ${1:-} == --all ]]; then
 fi
 jobs=$(nproc)
 
-./build.sh release --with packages-dev.txt -DPREGRASP_TESTS=ON
+options=(--with packages-dev.txt -DPREGRASP_TESTS=ON)
+if $all; then
+  options+=(--with packages-train.txt -DPREGRASP_TRAINER=ON)
+fi
+./build.sh release "${options[@]}"
 if ! $all; then
   exec ctest --preset release -j "$jobs" -LE long "$@"
 fi

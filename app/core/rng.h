@@ -21,6 +21,7 @@ enum class RngStream : std::uint32_t {
   kScript = 7,
   kCertificate = 8,
   kDecomposition = 9,
+  kTraining = 10,
 };
 
 /// Counter-based generator: Philox4x32-10 (Salmon et al., "Parallel random numbers: as easy as 1,

@@ -68,7 +68,7 @@ std::vector<std::pair<int, float>> CalcLocalWeights(const CloudStructure& struct
 }
 
 void WriteContactNumbers(const CloudStructure& structure, const Matrix3& R_GO,
-                         const SetEncoder& encoder, const ContactFeatureConfig& config,
+                         const SetEncoderConfig& encoder, const ContactFeatureConfig& config,
                          const PlanningContacts& contacts, float* out) {
   std::fill_n(out, kNumPlanningFingers * kContactNumbers + kPairNumbers, 0.0F);
   for (const auto& contact : contacts) {
@@ -95,12 +95,12 @@ void WriteContactNumbers(const CloudStructure& structure, const Matrix3& R_GO,
 }
 
 void WriteContactFeatures(const CloudStructure& structure, const EncodedState& encoded,
-                          const SetEncoder& encoder, const ContactFeatureConfig& config,
+                          const SetEncoderConfig& encoder, const ContactFeatureConfig& config,
                           const PlanningContacts& contacts, float* out) {
   WriteContactNumbers(structure, encoded.R_GO, encoder, config, contacts, out);
   if (config.local_neighbors == 0) return;
   out += kNumPlanningFingers * kContactNumbers + kPairNumbers;
-  const int size = encoder.config().local_size();
+  const int size = encoder.local_size();
   for (const auto& contact : contacts) {
     std::fill_n(out, size, 0.0F);
     if (contact) {

@@ -52,12 +52,12 @@ std::vector<std::pair<int, float>> CalcLocalWeights(const CloudStructure& struct
 /// Numbers without the local features, in frame G: thumb, index (kContactNumbers each, zero when
 /// absent), pair (kPairNumbers, zero unless both are present).
 void WriteContactNumbers(const CloudStructure& structure, const Matrix3& R_GO,
-                         const SetEncoder& encoder, const ContactFeatureConfig& config,
+                         const SetEncoderConfig& encoder, const ContactFeatureConfig& config,
                          const PlanningContacts& contacts, float* out);
 
 /// The same followed by the local features of thumb and index.
 void WriteContactFeatures(const CloudStructure& structure, const EncodedState& encoded,
-                          const SetEncoder& encoder, const ContactFeatureConfig& config,
+                          const SetEncoderConfig& encoder, const ContactFeatureConfig& config,
                           const PlanningContacts& contacts, float* out);
 
 }  // namespace pregrasp

@@ -89,7 +89,8 @@ std::vector<GraspPoints> GraspGenerator::Decode(const CloudStructure& structure,
   const int count = static_cast<int>(latent.size()) / latent_size_;
   const int features = head.others() - latent_size_;
   std::vector<float> condition(features);
-  WriteContactFeatures(structure, encoded, encoder_, contacts_, contacts, condition.data());
+  WriteContactFeatures(structure, encoded, encoder_.config(), contacts_, contacts,
+                       condition.data());
   Rows in, a, b;
   in.Resize(count, head.others());
   for (int i = 0; i < count; ++i) {

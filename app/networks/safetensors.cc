@@ -161,22 +161,22 @@ Entry ParseEntry(const std::string& name, const Json& json, std::size_t data_siz
 const char* DTypeName(DType dtype) { return InfoOf(dtype).name; }
 std::size_t DTypeSize(DType dtype) { return InfoOf(dtype).size; }
 
-std::int64_t Tensor::size() const {
+std::int64_t StoredTensor::size() const {
   std::int64_t count = 1;
   for (const std::int64_t extent : shape) count *= extent;
   return count;
 }
 
 template <typename T>
-Tensor MakeTensor(const std::vector<std::int64_t>& shape, const std::vector<T>& values) {
-  Tensor tensor{DTypeOf<T>(), shape, std::string(values.size() * sizeof(T), '\0')};
+StoredTensor MakeTensor(const std::vector<std::int64_t>& shape, const std::vector<T>& values) {
+  StoredTensor tensor{DTypeOf<T>(), shape, std::string(values.size() * sizeof(T), '\0')};
   PREGRASP_CHECK(tensor.size() == static_cast<std::int64_t>(values.size()), ShapeText(shape),
                  values.size());
   if (!values.empty()) std::memcpy(tensor.bytes.data(), values.data(), tensor.bytes.size());
   return tensor;
 }
 
-const Tensor& TensorFile::at(const std::string& name) const {
+const StoredTensor& TensorFile::at(const std::string& name) const {
   const auto found = tensors.find(name);
   if (found == tensors.end()) throw InputError(where, name, "a tensor of this name", "none");
   return found->second;
@@ -191,7 +191,7 @@ const std::string& TensorFile::metadata_at(const std::string& key) const {
 template <typename T>
 std::vector<T> TensorFile::Get(const std::string& name,
                                const std::vector<std::int64_t>& shape) const {
-  const Tensor& tensor = at(name);
+  const StoredTensor& tensor = at(name);
   if (tensor.dtype != DTypeOf<T>()) {
     throw InputError(where, name, std::string("dtype ") + DTypeName(DTypeOf<T>()),
                      DTypeName(tensor.dtype));
@@ -269,7 +269,7 @@ std::string SerializeTensors(const TensorFile& file) {
   if (!file.metadata.empty()) header[kMetadata] = file.metadata;
   std::size_t offset = 0;
   for (const std::string& name : names) {
-    const Tensor& tensor = file.tensors.at(name);
+    const StoredTensor& tensor = file.tensors.at(name);
     PREGRASP_CHECK(
         name != kMetadata && tensor.bytes.size() ==
                                  static_cast<std::size_t>(tensor.size()) * DTypeSize(tensor.dtype),
@@ -319,11 +319,14 @@ void WriteTensors(const std::filesystem::path& path, const TensorFile& file) {
   if (error) throw InputError(path.string(), "", "a file that can be written", error.message());
 }
 
-template Tensor MakeTensor(const std::vector<std::int64_t>&, const std::vector<float>&);
-template Tensor MakeTensor(const std::vector<std::int64_t>&, const std::vector<double>&);
-template Tensor MakeTensor(const std::vector<std::int64_t>&, const std::vector<std::int32_t>&);
-template Tensor MakeTensor(const std::vector<std::int64_t>&, const std::vector<std::int64_t>&);
-template Tensor MakeTensor(const std::vector<std::int64_t>&, const std::vector<std::uint8_t>&);
+template StoredTensor MakeTensor(const std::vector<std::int64_t>&, const std::vector<float>&);
+template StoredTensor MakeTensor(const std::vector<std::int64_t>&, const std::vector<double>&);
+template StoredTensor MakeTensor(const std::vector<std::int64_t>&,
+                                 const std::vector<std::int32_t>&);
+template StoredTensor MakeTensor(const std::vector<std::int64_t>&,
+                                 const std::vector<std::int64_t>&);
+template StoredTensor MakeTensor(const std::vector<std::int64_t>&,
+                                 const std::vector<std::uint8_t>&);
 template std::vector<float> TensorFile::Get(const std::string&,
                                             const std::vector<std::int64_t>&) const;
 template std::vector<double> TensorFile::Get(const std::string&,

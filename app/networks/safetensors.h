@@ -18,7 +18,7 @@ const char* DTypeName(DType dtype);  ///< "F32", ..
 std::size_t DTypeSize(DType dtype);  ///< bytes of one element
 
 /// A dense array, row-major, little-endian, as raw bytes.
-struct Tensor {
+struct StoredTensor {
   DType dtype = DType::kF32;
   std::vector<std::int64_t> shape;  ///< empty for a scalar
   std::string bytes;
@@ -26,10 +26,10 @@ struct Tensor {
   std::int64_t size() const;  ///< number of elements
 };
 
-/// Makes a Tensor of float, double, std::int32_t, std::int64_t or std::uint8_t. `values.size()`
-/// must be the product of `shape`.
+/// Makes a StoredTensor of float, double, std::int32_t, std::int64_t or std::uint8_t.
+/// `values.size()` must be the product of `shape`.
 template <typename T>
-Tensor MakeTensor(const std::vector<std::int64_t>& shape, const std::vector<T>& values);
+StoredTensor MakeTensor(const std::vector<std::int64_t>& shape, const std::vector<T>& values);
 
 /// What a safetensors file holds: named tensors and a text-to-text map of metadata. The format is
 /// that of https://github.com/huggingface/safetensors: the header's length as 8 bytes, the header
@@ -37,7 +37,7 @@ Tensor MakeTensor(const std::vector<std::int64_t>& shape, const std::vector<T>& 
 struct TensorFile {
   std::string where;  ///< the file's name, for messages
   std::map<std::string, std::string> metadata;
-  std::map<std::string, Tensor> tensors;
+  std::map<std::string, StoredTensor> tensors;
 
   /// The values of tensor `name`. A negative entry of `shape` leaves that extent open.
   /// @throws InputError if it is absent, of another type, of another shape, or (for float and
@@ -46,7 +46,7 @@ struct TensorFile {
   std::vector<T> Get(const std::string& name, const std::vector<std::int64_t>& shape) const;
 
   /// @throws InputError if there is none.
-  const Tensor& at(const std::string& name) const;
+  const StoredTensor& at(const std::string& name) const;
   const std::string& metadata_at(const std::string& key) const;
 };
 

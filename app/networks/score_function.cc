@@ -37,7 +37,8 @@ void ScoreFunction::ScoreRange(const CloudStructure& structure, const EncodedSta
   Rows features, a, b;
   features.Resize(count, head_.others());
   for (int i = 0; i < count; ++i) {
-    WriteContactFeatures(structure, encoded, encoder_, contacts_, contacts[i], features.row(i));
+    WriteContactFeatures(structure, encoded, encoder_.config(), contacts_, contacts[i],
+                         features.row(i));
   }
   const Rows& out = head_.Apply(share, features, a, b);
   for (int i = 0; i < count; ++i) {

@@ -65,10 +65,6 @@ SetEncoder SetEncoder::Load(const TensorFile& file, const std::string& prefix) {
   return encoder;
 }
 
-float SetEncoder::ScaledDistance(double phi) const {
-  return static_cast<float>(std::clamp(phi, config_.phi_min, config_.phi_max) * config_.phi_scale);
-}
-
 void SetEncoder::ApplyLevel(const Level& level, const SetLevel& graph, Workspace& work) {
   const int count = static_cast<int>(graph.centroids.size());
   const int width = level.point.outputs();
@@ -139,7 +135,7 @@ void SetEncoder::EncodeLevels(const CloudStructure& structure, const ObjectState
     const Vector3 p = R * (structure.P_O.row(i).transpose() - structure.p_OC);
     float* row = work.points.row(i);
     for (int axis = 0; axis < kAxes; ++axis) row[axis] = static_cast<float>(p[axis]);
-    row[kAxes] = ScaledDistance(state.phi.size() ? state.phi[i] : config_.phi_max);
+    row[kAxes] = config_.ScaledDistance(state.phi.size() ? state.phi[i] : config_.phi_max);
     if (!state.occluded.empty() && state.occluded[i]) work.present[i] = 0;
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) {

@@ -24,6 +24,9 @@ struct SetEncoderConfig {
   int code_size() const { return code_widths.back(); }
   int local_size() const { return levels.front().widths.back(); }
 
+  /// `phi` clamped and scaled, as every network input that is a signed distance.
+  float ScaledDistance(double phi) const;
+
   std::string ToJson() const;
   /// @throws InputError naming `where` if `text` is not a configuration.
   static SetEncoderConfig FromJson(const std::string& text, const std::string& where);
@@ -76,9 +79,6 @@ class SetEncoder {
   /// Encodes states[0 .. count) on the calling thread.
   void EncodeChunk(const CloudStructure& structure, const ObjectState* states, int count,
                    EncodedState* encoded) const;
-
-  /// `phi` clamped and scaled, as every network input that is a signed distance.
-  float ScaledDistance(double phi) const;
 
  private:
   // One level: `point` is the first layer over (position, features), `shift` its part in the

@@ -1,9 +1,14 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/core/error.h"
 #include "app/networks/set_encoder.h"
 
 namespace pregrasp {
+
+float SetEncoderConfig::ScaledDistance(double phi) const {
+  return static_cast<float>(std::clamp(phi, phi_min, phi_max) * phi_scale);
+}
 
 std::string SetEncoderConfig::ToJson() const {
   nlohmann::ordered_json json;

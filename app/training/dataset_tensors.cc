@@ -50,7 +50,7 @@ class Reader {
     return file_.Get<T>(name, rest);
   }
   std::int64_t RowsOf(const std::string& name) {
-    const Tensor& tensor = file_.at(name);
+    const StoredTensor& tensor = file_.at(name);
     if (tensor.shape.empty()) throw InputError(file_.where, name, "a table", "a number");
     return tensor.shape[0];
   }

@@ -17,14 +17,14 @@ std::string Read(const std::string& name) {
 
 TEST(PackagesTest, EveryPackageHasItsReasonInTheReadme) {
   const std::string readme = Read("README.md");
-  for (const char* list : {"packages.txt", "packages-dev.txt"}) {
+  for (const char* list : {"packages.txt", "packages-dev.txt", "packages-train.txt"}) {
     std::istringstream packages(Read(list));
     int count = 0;
     for (std::string package; packages >> package; ++count) {
       EXPECT_NE(readme.find('`' + package + '`'), std::string::npos)
           << package << " of " << list << " is not in the README's table";
     }
-    EXPECT_GT(count, 3) << list;
+    EXPECT_GT(count, 0) << list;
   }
 }
 

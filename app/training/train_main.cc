@@ -1,0 +1,192 @@
+// pregrasp-train: learns the score function and the grasp generators from a data set.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/core/text.h"
+#include "app/training/generator_task.h"
+#include "app/training/score_task.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kInternalError = 1;
+constexpr int kBadInput = 2;
+constexpr int kInterrupted = 130;  // as shells have it for SIGINT
+
+struct Options {
+  fs::path data, out = "out/training";
+  std::vector<std::string> validation;
+  TrainingConfig training;
+  ScoreTaskConfig score;
+  GeneratorTaskConfig generator;
+  std::string variant = "full", encoder = "default";
+};
+
+// Step, loss and time left: one line that renews itself on a terminal, plain lines otherwise.
+class Reporter {
+ public:
+  explicit Reporter(std::string name) : name_(std::move(name)) {}
+
+  void operator()(const TrainingProgress& progress) {
+    const auto now = Clock::now();
+    if (first_step_ < 0) {
+      first_step_ = progress.step;
+      start_ = shown_ = now;
+      return;
+    }
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    const bool due = now - shown_ > (terminal ? std::chrono::seconds(1) : std::chrono::seconds(30));
+    if (!due && progress.metrics == nullptr) return;
+    shown_ = now;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const auto done = static_cast<double>(progress.step - first_step_);
+    const double left = seconds / done * static_cast<double>(progress.steps - progress.step);
+    const std::string line =
+        fmt::format("{}: step {}/{}, loss {:.4f}, {:.0f} steps/s, {:.0f} s left", name_,
+                    progress.step, progress.steps, progress.loss, done / seconds, left);
+    std::fprintf(stderr, "%s%s%s", terminal ? "\r\033[K" : "", line.c_str(), terminal ? "" : "\n");
+    if (progress.metrics != nullptr) {
+      Json short_metrics = *progress.metrics;
+      short_metrics.erase("families");
+      short_metrics.erase("calibration");
+      std::fprintf(stderr, "%s  %s\n", terminal ? "\n" : "", short_metrics.dump().c_str());
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string name_;
+  std::int64_t first_step_ = -1;
+  Clock::time_point start_, shown_;
+};
+
+void WriteJson(const fs::path& path, const Json& json) {
+  std::ofstream out(path, std::ios::trunc);
+  out << json.dump(1) << "\n";
+  if (!out) throw InputError(path.string(), "", "a file that can be written", "a write error");
+}
+
+// Trains `task` into OUT/NAME.safetensors, with OUT/NAME.checkpoint and OUT/NAME.metrics.json.
+template <typename Task>
+int Train(Task& task, const Options& options, const std::string& name) {
+  fs::create_directories(options.out);
+  TrainingConfig training = options.training;
+  training.checkpoint = options.out / (name + ".checkpoint");
+  const Json history = RunTraining(task, training, Reporter(name));
+  WriteTensors(options.out / (name + ".safetensors"), task.Export());
+  WriteJson(options.out / (name + ".metrics.json"),
+            {{"task", Json::parse(task.Describe())},
+             {"training", training.ToJson()},
+             {"training_contexts", task.data().training.size()},
+             {"validation_contexts", task.data().validation.size()},
+             {"history", history}});
+  return 0;
+}
+
+SetEncoderConfig EncoderNamed(const std::string& name) {
+  if (name == "default") return {};
+  if (name == "paper") return PaperSetEncoderConfig();
+  throw InputError("--encoder", "", "default or paper", name);
+}
+
+int TrainScore(Options options) {
+  options.score.encoder = EncoderNamed(options.encoder);
+  options.score.variant = ParseScoreVariant(options.variant);
+  options.score.seed = options.training.seed;
+  ScoreTask task(std::make_shared<Dataset>(ReadDataset(options.data)), options.validation,
+                 options.score);
+  return Train(task, options, "score");
+}
+
+int TrainGenerator(Options options) {
+  options.generator.encoder = EncoderNamed(options.encoder);
+  options.generator.seed = options.training.seed;
+  GeneratorTask task(std::make_shared<Dataset>(ReadDataset(options.data)), options.validation,
+                     options.generator);
+  return Train(task, options, "generator");
+}
+
+void AddCommonOptions(CLI::App& command, Options& options) {
+  command.add_option("data", options.data, "Folder of a merged data set")->required();
+  command.add_option("--out", options.out, "Where weights, metrics and checkpoint go")
+      ->capture_default_str();
+  command.add_option("--validation", options.validation, "Families held out, comma-separated")
+      ->delimiter(',');
+  command.add_option("--steps", options.training.steps, "Optimiser steps")->capture_default_str();
+  command.add_option("--rate", options.training.learning_rate, "Learning rate")
+      ->capture_default_str();
+  command.add_option("--decay", options.training.weight_decay, "Weight decay")
+      ->capture_default_str();
+  command.add_option("--seed", options.training.seed, "Of everything random")
+      ->capture_default_str();
+  command
+      .add_option("--evaluate-every", options.training.evaluate_every,
+                  "Steps between evaluations on the families held out")
+      ->capture_default_str();
+  command.add_option("--encoder", options.encoder, "default, or paper for its PointNet++")
+      ->capture_default_str();
+}
+
+int Fail(int code, const std::string& message) {
+  std::fprintf(stderr, "%s\n", OneLine(message).c_str());
+  return code;
+}
+
+int Run(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Learns pregrasp's networks from a data set made by `pregrasp dataset`. Can be cut "
+      "off at any moment: the same command goes on where it was.",
+      "pregrasp-train");
+  app.require_subcommand(1);
+  CLI::App* score = app.add_subcommand("score", "The score function");
+  AddCommonOptions(*score, options);
+  score->add_option("--variant", options.variant, "full, no-sdf, no-shape or frozen-encoder")
+      ->capture_default_str();
+  score->add_option("--labels", options.score.labels_per_context, "Labels per context and step")
+      ->capture_default_str();
+  CLI::App* generator = app.add_subcommand("generator", "The three grasp generators");
+  AddCommonOptions(*generator, options);
+  generator->add_option("--latent", options.generator.latent_size, "Size of the latent space")
+      ->capture_default_str();
+  generator->add_option("--kl", options.generator.kl_weight, "Weight of the divergence")
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return Fail(kBadInput,
+                std::string("pregrasp-train: ") + error.what() + " (see pregrasp-train --help)");
+  }
+  PrepareTorch();
+  return score->parsed() ? TrainScore(options) : TrainGenerator(options);
+}
+
+}  // namespace
+}  // namespace pregrasp
+
+int main(int argc, char** argv) {
+  using namespace pregrasp;  // NOLINT: the program's own namespace
+  try {
+    InstallInterruptHandler();
+    return Run(argc, argv);
+  } catch (const InputError& error) {
+    return Fail(kBadInput, error.what());
+  } catch (const Interrupted& error) {
+    return Fail(kInterrupted, error.what());
+  } catch (const std::exception& error) {
+    return Fail(kInternalError, std::string("pregrasp-train: a bug of ours: ") + error.what());
+  }
+}
