@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <regex>
 
 #include "tests/recording/sample_run.h"
 
@@ -22,13 +21,19 @@ std::string HashOf(const fs::path& source, const fs::path& output) {
                   "' -P '" PREGRASP_SOURCE_DIR "/app/recording/git_hash.cmake'"),
             0);
   const std::string text = ReadFile(output);
-  std::smatch match;
-  return std::regex_search(text, match, std::regex("\"(.*)\"")) ? match[1].str() : "";
+  const std::size_t begin = text.find('"') + 1;
+  return text.substr(begin, text.rfind('"') - begin);
+}
+
+bool IsCommit(const std::string& text) {
+  return text.size() == 40 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
 TEST(BuildInfoTest, TheHashIsACommitOrUnknown) {
-  EXPECT_TRUE(std::regex_match(GitHash(), std::regex("[0-9a-f]{40}(-dirty)?|unknown")))
-      << GitHash();
+  std::string hash = GitHash();
+  const std::size_t mark = hash.find("-dirty");
+  if (mark != std::string::npos && mark + 6 == hash.size()) hash.resize(mark);
+  EXPECT_TRUE(hash == "unknown" || IsCommit(hash)) << GitHash();
 }
 
 TEST(BuildInfoTest, ATreeOutsideGitIsUnknown) {
@@ -49,7 +54,7 @@ TEST(BuildInfoTest, TheHashFollowsTheTreeAndTheFileChangesOnlyWithIt) {
   ASSERT_EQ(Shell(git + "tag v1"), 0);  // a tag must not take the hash's place
 
   const std::string clean = HashOf(folder.path(), output);
-  EXPECT_TRUE(std::regex_match(clean, std::regex("[0-9a-f]{40}"))) << clean;
+  EXPECT_TRUE(IsCommit(clean)) << clean;
   const auto written = fs::last_write_time(output);
   EXPECT_EQ(HashOf(folder.path(), output), clean);
   EXPECT_EQ(fs::last_write_time(output), written);
@@ -66,7 +71,7 @@ TEST(BuildInfoTest, LibrariesHaveVersions) {
   const auto libraries = BuildLibraries();
   for (const char* name : {"eigen", "fmt", "mrpt", "nlohmann_json", "zlib"}) {
     ASSERT_TRUE(libraries.count(name)) << name;
-    EXPECT_TRUE(std::regex_match(libraries.at(name), std::regex("[0-9]+\\.[0-9]+.*"))) << name;
+    EXPECT_NE(libraries.at(name).find('.'), std::string::npos) << name << ' ' << libraries.at(name);
   }
 }
 

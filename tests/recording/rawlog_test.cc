@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
-#include <regex>
 
 #include "app/core/error.h"
 #include "app/recording/build_info.h"
@@ -41,9 +41,19 @@ int CountLines(const fs::path& file) {
   return count;
 }
 
-int CountMatches(const std::string& text, const std::string& pattern) {
-  const std::regex regex(pattern);
-  return static_cast<int>(std::distance(std::sregex_iterator(text.begin(), text.end(), regex), {}));
+int Count(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+// With each run of blanks as one.
+std::string Squeeze(std::string text) {
+  const auto both_blank = [](char a, char b) { return a == ' ' && b == ' '; };
+  text.erase(std::unique(text.begin(), text.end(), both_blank), text.end());
+  return text;
 }
 
 class RawlogTest : public testing::Test {
@@ -91,18 +101,15 @@ TEST_F(RawlogTest, MrptReadsEveryStepBack) {
 TEST_F(RawlogTest, RawlogEditSeesEveryStep) {
   const CommandResult info = RunIn(folder_->path(), "rawlog-edit --info -i run/run.rawlog");
   ASSERT_EQ(info.status, 0) << info.output;
-  // The header and a pair a step; rawlog-edit counts what is inside a pair as one.
-  EXPECT_EQ(
-      CountMatches(info.output, "number of objects +: " + std::to_string(2 * kSteps + 1) + "\n"), 1)
-      << info.output;
+  const std::string text = Squeeze(info.output);
+  // The header and a pair a step.
+  EXPECT_EQ(Count(text, "number of objects : " + std::to_string(2 * kSteps + 1) + '\n'), 1) << text;
   for (const char* label : {"pose_object", "pose_tool", "pose_tool_2", "contacts", "picture"}) {
-    EXPECT_EQ(CountMatches(info.output,
-                           std::string(" ") + label + " / +" + std::to_string(kSteps) + " /"),
-              1)
-        << label << info.output;
+    EXPECT_EQ(Count(text, std::string(": ") + label + " / " + std::to_string(kSteps) + " /"), 1)
+        << label << text;
   }
-  EXPECT_EQ(CountMatches(info.output, "Earliest timestamp +: 946684800\\.000000"), 1);
-  EXPECT_EQ(CountMatches(info.output, "Latest timestamp +: 946684800\\.162500"), 1);
+  EXPECT_EQ(Count(text, "Earliest timestamp : 946684800.000000"), 1) << text;
+  EXPECT_EQ(Count(text, "Latest timestamp : 946684800.162500"), 1) << text;
 }
 
 TEST_F(RawlogTest, RawlogEditListsThePictureOfEveryStepAndFindsThem) {
@@ -122,8 +129,8 @@ TEST_F(RawlogTest, RawlogEditListsThePictureOfEveryStepAndFindsThem) {
   // Describing an image loads it.
   const CommandResult all = RunIn(run(), "rawlog-edit --describe -i run.rawlog");
   EXPECT_EQ(all.status, 0);
-  EXPECT_EQ(CountMatches(all.output, "Image size: 1x1 pixels"), kSteps);
-  EXPECT_EQ(CountMatches(all.output, "\"number\":[0-9]+,\"id\":\"sim\\."), kSteps);
+  EXPECT_EQ(Count(all.output, "Image size: 1x1 pixels"), kSteps);
+  EXPECT_EQ(Count(all.output, "\"id\":\"sim."), kSteps);
 }
 
 TEST_F(RawlogTest, RawlogEditExportsEveryPoseAndContact) {
