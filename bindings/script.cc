@@ -7,6 +7,7 @@
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
 #include "app/recording/build_info.h"
+#include "bindings/lua_grasp.h"
 #include "bindings/lua_scene.h"
 #include "bindings/lua_session.h"
 #include "bindings/sandbox.h"
@@ -124,13 +125,14 @@ Api MakeApi() {
   static Schema module{"pregrasp", {"version", "seed"}};
   api.functions.push_back(&OpenFunction());
   for (const FunctionInfo& constructor : SceneConstructors()) api.functions.push_back(&constructor);
+  for (const FunctionInfo& function : GraspFunctions()) api.functions.push_back(&function);
   for (const FunctionInfo* function : api.functions) module.keys.push_back(function->name);
   api.module = &module;
   api.classes = {&SessionClass(), &SimulationClass()};
   for (const ClassInfo* scene_class : SceneClasses()) api.classes.push_back(scene_class);
   api.schemas = {&kOpenOptions};
   for (const auto& schemas :
-       {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas()}) {
+       {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas(), GraspSchemas()}) {
     api.schemas.insert(api.schemas.end(), schemas.begin(), schemas.end());
   }
   return api;

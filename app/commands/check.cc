@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -9,6 +10,8 @@
 
 #include "app/commands/commands.h"
 #include "app/core/text.h"
+#include "app/core/thread_pool.h"
+#include "app/pipeline/start_verdict.h"
 #include "bindings/scene_file.h"
 
 namespace pregrasp {
@@ -17,6 +20,8 @@ namespace {
 struct CheckOptions {
   std::string scene;
   std::vector<std::string> settings;
+  std::uint64_t seed = 1;
+  bool no_grasps = false;
 };
 
 // One line a finding; the first error is the one line on stderr.
@@ -33,6 +38,14 @@ int Check(const CheckOptions& options) {
                error ? "error" : "warning", OneLine(finding.message));
   }
   if (errors > 0) return 2;
+  if (!options.no_grasps) {
+    ThreadPool pool;
+    const StartReport report = FindStartReport(scene, options.seed, pool);
+    const bool graspable = report.certificate.verdict == StartVerdict::kGraspable;
+    warnings += graspable;
+    fmt::print("{}: {}{}\n", scene.object().where, graspable ? "warning: " : "",
+               DescribeStart(report));
+  }
   fmt::print("{}: {}, {} bodies, {}\n", options.scene,
              warnings == 0 ? "clean" : fmt::format("usable, warnings: {}", warnings),
              scene.bodies.size(), "at rest, no overlaps");
@@ -43,11 +56,14 @@ int Check(const CheckOptions& options) {
 
 void AddCheck(CLI::App& app, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command =
-      app.add_subcommand("check", "Check a scene: overlaps, not at rest, implausible units, rules");
+  CLI::App* command = app.add_subcommand(
+      "check", "Check a scene: overlaps, not at rest, implausible units, rules, graspable already");
   command->add_option("SCENE", options->scene, "The scene, a Lua file")->required();
   command->add_option("--set", options->settings, "Change a value: object.mass=0.2")
       ->allow_extra_args(false);
+  command->add_option("--seed", options->seed, "Of the search for grasps")->capture_default_str();
+  command->add_flag("--no-grasps", options->no_grasps,
+                    "Do not ask whether the object can be grasped where it stands");
   command->callback([options, &action] { action = [options] { return Check(*options); }; });
 }
 

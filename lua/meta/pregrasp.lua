@@ -323,4 +323,94 @@ function Simulation:body(name) end
 ---@field gap_mm number before the step, negative when they overlap
 ---@field slip_speed number of b along a's surface [m/s]
 
+-- The tests of a grasp. ------------------------------------------------------------------------------
+
+---Whether contacts can hold an object: forces in the friction cones with zero net wrench exist, and forces
+---that balance the weight. Torques are about the origin of p. Exact circular cones.
+---@param options WrenchOptions
+---@return WrenchResult
+function pregrasp.wrench(options) end
+
+---@class WrenchOptions
+---@field p Vector3[] contact points [m]
+---@field n Vector3[] normals into the object, any length
+---@field mu? number 0.8
+---@field mass? number of the object, its weight acting at the origin [kg], 0
+---@field gravity? Vector3 [m/s^2], {0, 0, -9.81}
+---@field f_min? number smallest normal force of every contact [N], 0.5
+---@field f_max? number largest [N], 12
+---@field torque_scale? number torques are divided by this length [m], 1: the object's radius
+
+---@class WrenchResult
+---@field feasible boolean
+---@field closed boolean force closure: margin > 0
+---@field margin number Ferrari and Canny's epsilon, signed
+---@field min_normal number smallest normal part of the forces [N]
+---@field forces Vector3[] on the object, of least effort [N]
+---@field status string "feasible", or the condition that fails
+---@field residual number net wrench that is left, 0 if feasible
+
+---A hand pose whose fingertips touch the contacts, within cones of 60 degrees, without overlap with
+---the scene's bodies at the start, the object and the hand itself; certified by FCL.
+---@param options IkOptions
+---@return IkResult
+function pregrasp.ik(options) end
+
+---@class IkOptions
+---@field contacts IkContacts
+---@field scene? Session without one only the hand itself is in the way
+---@field seed? integer 1
+---@field max_starts? integer initial postures tried, 20
+
+---@class IkContacts
+---@field thumb? IkContact
+---@field index? IkContact
+---@field middle? IkContact
+---@field ring? IkContact
+---@field little? IkContact
+
+---@class IkContact
+---@field p Vector3 on the object's surface, in the world [m]
+---@field n Vector3 the surface's normal there, into the object; with a scene either side will do
+
+---@class IkResult
+---@field status string "solved", or what cannot be met
+---@field solved boolean
+---@field X_WH Transform of the palm
+---@field q HandJoints
+---@field tip_error number of the worst fingertip [m]
+---@field cone_angle number between a distal axis and its inward normal, the largest [rad]
+---@field clearance number least distance but at the contacts [m]; 0.02 if nothing is closer
+---@field starts integer initial postures tried
+---@field method string whose solution it is
+
+---@class Transform
+---@field p Vector3
+---@field q number[] {w, x, y, z}
+
+---Joint angles by the hand's own names [rad].
+---@class HandJoints
+---@field FFJ4 number
+---@field FFJ3 number
+---@field FFJ2 number
+---@field FFJ1 number
+---@field MFJ4 number
+---@field MFJ3 number
+---@field MFJ2 number
+---@field MFJ1 number
+---@field RFJ4 number
+---@field RFJ3 number
+---@field RFJ2 number
+---@field RFJ1 number
+---@field LFJ5 number
+---@field LFJ4 number
+---@field LFJ3 number
+---@field LFJ2 number
+---@field LFJ1 number
+---@field THJ5 number
+---@field THJ4 number
+---@field THJ3 number
+---@field THJ2 number
+---@field THJ1 number
+
 return pregrasp

@@ -1,0 +1,184 @@
+#include "bindings/lua_grasp.h"
+
+#include <string>
+
+#include "app/grasp/wrench.h"
+#include "app/hand/ik.h"
+#include "bindings/lua_session.h"
+
+namespace pregrasp {
+namespace {
+
+const Schema kWrenchOptions{"WrenchOptions",
+                            {"p", "n", "mu", "mass", "gravity", "f_min", "f_max", "torque_scale"}};
+const Schema kWrenchResult{
+    "WrenchResult", {"feasible", "closed", "margin", "min_normal", "forces", "status", "residual"}};
+const Schema kIkOptions{"IkOptions", {"contacts", "scene", "seed", "max_starts"}};
+const Schema kIkContacts{"IkContacts", {"thumb", "index", "middle", "ring", "little"}};
+const Schema kIkContact{"IkContact", {"p", "n"}};
+const Schema kTransform{"Transform", {"p", "q"}};
+const Schema kIkResult{
+    "IkResult",
+    {"status", "solved", "X_WH", "q", "tip_error", "cone_angle", "clearance", "starts", "method"}};
+
+const Schema& JointSchema() {
+  static const Schema schema{"HandJoints", {kHandJointNames.begin(), kHandJointNames.end()}};
+  return schema;
+}
+
+MatrixX3 ToMatrix(const std::vector<Vector3>& rows) {
+  MatrixX3 matrix(static_cast<Eigen::Index>(rows.size()), 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) matrix.row(static_cast<Eigen::Index>(i)) = rows[i];
+  return matrix;
+}
+
+}  // namespace
+
+// What wrench{..} takes.
+struct WrenchOptions {
+  std::vector<WrenchContact> contacts;
+  WrenchConfig config;
+};
+template <>
+struct LuaValue<WrenchOptions> {
+  static WrenchOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    const Fields fields(L, index, kWrenchOptions);
+    WrenchOptions options;
+    options.contacts = MakeWrenchContacts(ToMatrix(fields.Required<std::vector<Vector3>>("p")),
+                                          ToMatrix(fields.Required<std::vector<Vector3>>("n")));
+    WrenchConfig& config = options.config;
+    config.mu = fields.Optional("mu", config.mu);
+    config.mass = fields.Optional("mass", config.mass);
+    config.gravity = fields.Optional("gravity", config.gravity);
+    config.f_min = fields.Optional("f_min", config.f_min);
+    config.f_max = fields.Optional("f_max", config.f_max);
+    config.torque_scale = fields.Optional("torque_scale", config.torque_scale);
+    return options;
+  }
+};
+
+// What ik{..} takes.
+struct IkOptions {
+  std::vector<IkContact> contacts;  // nhat_W as given
+  std::shared_ptr<Session> session;
+  std::int64_t seed = 1;
+  int max_starts = IkConfig{}.max_starts;
+};
+template <>
+struct LuaValue<IkContact> {
+  static IkContact Read(lua_State* L, int index, const std::string& path) {
+    const Fields fields(L, index, kIkContact, path + ".");
+    IkContact contact;
+    contact.p_WC = fields.Required<Vector3>("p");
+    contact.nhat_W = fields.Required<Vector3>("n");
+    if (!(contact.nhat_W.norm() > 1e-9)) fields.Refuse("n", "a direction of length above 0");
+    contact.nhat_W.normalize();
+    return contact;
+  }
+};
+template <>
+struct LuaValue<IkOptions> {
+  static IkOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    const Fields fields(L, index, kIkOptions);
+    IkOptions options;
+    fields.Push("contacts");
+    if (!lua_istable(L, -1)) fields.Refuse("contacts", "a table of contacts by finger");
+    const Fields by_finger(L, lua_gettop(L), kIkContacts, "contacts.");
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (!by_finger.Has(kFingerNames[f])) continue;
+      options.contacts.push_back(by_finger.Required<IkContact>(kFingerNames[f]));
+      options.contacts.back().finger = static_cast<Finger>(f);
+    }
+    lua_pop(L, 1);
+    if (options.contacts.empty()) fields.Refuse("contacts", "at least one contact");
+    if (fields.Has("scene")) options.session = fields.Required<std::shared_ptr<Session>>("scene");
+    options.seed = fields.Optional<std::int64_t>("seed", options.seed);
+    options.max_starts = fields.Optional("max_starts", options.max_starts);
+    return options;
+  }
+};
+
+namespace {
+
+Pushed Wrench(lua_State* L, const WrenchOptions& options) {
+  const WrenchResult result = CalcWrench(options.contacts, options.config);
+  RecordWriter(L, kWrenchResult)
+      .Set("feasible", result.feasible())
+      .Set("closed", result.closed)
+      .Set("margin", result.margin)
+      .Set("min_normal", result.min_normal)
+      .Set("forces", result.forces)
+      .Set("status", WrenchStatusName(result.status))
+      .Set("residual", result.residual);
+  return {1};
+}
+
+// The scene's object says which side of a contact is outside; without a scene, normals point into
+// the object, as in wrench{..}.
+void TurnNormalsOutward(const Session* session, std::vector<IkContact>& contacts) {
+  if (session == nullptr) {
+    for (IkContact& contact : contacts) contact.nhat_W = -contact.nhat_W;
+    return;
+  }
+  const RigidTransform X_WO = session->start().bodies.front().X_WB();
+  const SignedDistance object(session->scene().object().shape);
+  for (IkContact& contact : contacts) {
+    Vector3 nhat_O;
+    object.Project(X_WO.inverse() * contact.p_WC, &nhat_O);
+    if (contact.nhat_W.dot(X_WO.linear() * nhat_O) < 0.0) contact.nhat_W = -contact.nhat_W;
+  }
+}
+
+Pushed Ik(lua_State* L, IkOptions& options) {
+  IkConfig config;
+  config.max_starts = options.max_starts;
+  config.Validate();
+  TurnNormalsOutward(options.session.get(), options.contacts);
+  IkProblem problem;
+  problem.contacts = options.contacts;
+  const Rng rng(static_cast<std::uint64_t>(options.seed), RngStream::kIk);
+  const HandModel& hand = ShadowHand();
+  IkResult result;
+  if (options.session) {
+    const Session& session = *options.session;
+    problem.X_WB = session.world().GetPoses(session.start());
+    result = IkSolver(hand, session.scene()).Solve(config, problem, rng);
+  } else {
+    result = IkSolver(hand).Solve(config, problem, rng);
+  }
+  RecordWriter joints(L, JointSchema());
+  for (int j = 0; j < kNumHandJoints; ++j) joints.Set(kHandJointNames[j], double(result.q[j]));
+  const int q = lua_gettop(L);
+  RecordWriter(L, kTransform)
+      .Set("p", Vector3(result.X_WH.translation()))
+      .Set("q", Quaternion(result.X_WH.linear()));
+  const int X_WH = lua_gettop(L);
+  RecordWriter record(L, kIkResult);
+  record.Set("status", IkStatusName(result.status))
+      .Set("solved", result.solved())
+      .Set("tip_error", result.tip_error)
+      .Set("cone_angle", result.cone_angle)
+      .Set("clearance", result.clearance)
+      .Set("starts", result.starts)
+      .Set("method", IkMethodName(result.method));
+  lua_pushvalue(L, q);
+  record.SetTop("q");
+  lua_pushvalue(L, X_WH);
+  record.SetTop("X_WH");
+  return {1};
+}
+
+}  // namespace
+
+const std::vector<FunctionInfo>& GraspFunctions() {
+  static const std::vector<FunctionInfo> functions = {Function<&Wrench>("wrench", "options"),
+                                                      Function<&Ik>("ik", "options")};
+  return functions;
+}
+
+std::vector<const Schema*> GraspSchemas() {
+  return {&kWrenchOptions, &kWrenchResult, &kIkOptions, &kIkContacts,
+          &kIkContact,     &kTransform,    &kIkResult,  &JointSchema()};
+}
+
+}  // namespace pregrasp
