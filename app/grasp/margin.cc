@@ -14,6 +14,8 @@ constexpr int kMaxPoints = 1 << 12;  // so that five indices fit in one 64-bit k
 // How far beyond a facet's plane a point must lie to count as beyond, as a share of the points'
 // extent: well above rounding, so that no facet is built on a sliver of noise.
 constexpr double kBeyond = 1e-10;
+// And how thin a hull, or a shell around the origin, counts as none.
+constexpr double kThin = 1e-9;
 
 std::vector<Vector6> CalcEdgeWrenches(std::span<const WrenchContact> contacts, double mu,
                                       double torque_scale) {
@@ -65,7 +67,7 @@ class ExpandingPolytope {
                            [](const Facet& a, const Facet& b) { return a.offset < b.offset; });
       const int farthest = FindFarthest(points_, nearest->normal);
       if (!IsBeyond(*nearest, points_[farthest]) || inserted[farthest]) {
-        return std::max(0.0, nearest->offset);
+        return nearest->offset > kThin * extent_ ? nearest->offset : 0.0;
       }
       inserted[farthest] = true;
       Insert(farthest);
@@ -107,7 +109,7 @@ class ExpandingPolytope {
           simplex[k + 1] = static_cast<int>(i);
         }
       }
-      if (farthest <= 1e-9 * extent_) return false;
+      if (farthest <= kThin * extent_) return false;
     }
     inside_.setZero();
     for (const int i : simplex) inside_ += points_[i] / 7.0;

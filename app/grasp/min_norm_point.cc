@@ -35,48 +35,70 @@ void Corral::Remove(int index) {
   size_ = kept;
 }
 
-bool Corral::Reduce() {
-  std::array<double, 8> target{};
-  while (CalcAffineMinimum(target)) {
-    // Go there, or only as far as until the first weight is used up.
-    double step = 1.0;
-    int leaving = -1;
-    for (int i = 0; i < size_; ++i) {
-      if (target[i] > 0.0) continue;
-      const double ratio = weights_[i] / (weights_[i] - target[i]);
-      if (leaving < 0 || ratio < step) {
-        step = ratio;
-        leaving = i;
-      }
+// Takes the largest step along `direction` that leaves no weight negative, at most 1, and drops
+// the point that limits it. False if none did.
+bool Corral::StepAndDrop(const std::array<double, 8>& direction, double longest) {
+  double step = longest;
+  int leaving = -1;
+  for (int i = 0; i < size_; ++i) {
+    if (!(weights_[i] + longest * direction[i] <= 0.0)) continue;
+    const double ratio = weights_[i] / -direction[i];
+    if (leaving < 0 || ratio < step) {
+      step = ratio;
+      leaving = i;
     }
-    if (leaving < 0) {
-      weights_ = target;
-      return true;
-    }
-    for (int i = 0; i < size_; ++i) weights_[i] += step * (target[i] - weights_[i]);
-    Remove(leaving);
   }
-  return false;
+  for (int i = 0; i < size_; ++i) weights_[i] += step * direction[i];
+  if (leaving < 0) return false;
+  Remove(leaving);
+  return true;
 }
 
-// The weights, summing to 1, of the point of smallest norm in the affine hull. By Householder QR of
-// D = [p1 - p0, p2 - p0, ..]: min |p0 + D a|. Normal equations would be shorter, but squaring the
-// condition number costs the last digits that decide borderline sets.
-bool Corral::CalcAffineMinimum(std::array<double, 8>& weights) const {
+void Corral::Reduce() {
+  constexpr double kFar = 1e300;
+  std::array<double, 8> direction{};
+  while (true) {
+    const bool independent = CalcDirection(direction);
+    // Dependent points: their weights can be shifted without moving the point they make until one
+    // of them is not needed (Caratheodory).
+    if (!StepAndDrop(direction, independent ? 1.0 : kFar)) return;
+  }
+}
+
+// By Householder QR of D = [p1 - p0, p2 - p0, ..]: the affine minimum is that of |p0 + D a|. Normal
+// equations would be shorter, but squaring the condition number costs the last digits that decide
+// borderline sets.
+bool Corral::CalcDirection(std::array<double, 8>& direction) const {
   const int columns = size_ - 1;
-  if (columns > 6) return false;
-  std::array<Vector6, 6> d;
+  std::array<Vector6, 7> d;
   double scale = 0.0;
   for (int j = 0; j < columns; ++j) {
     d[j] = points_[j + 1] - points_[0];
     scale = std::max(scale, d[j].squaredNorm());
   }
   const double tiny = 1e-26 * scale;
+  // Solves R a = rhs for the first `count` columns into direction[1..count].
+  const auto solve = [&](int count, const Vector6& rhs) {
+    double sum = 0.0;
+    for (int j = count - 1; j >= 0; --j) {
+      double value = rhs[j];
+      for (int k = j + 1; k < count; ++k) value -= d[k][j] * direction[k + 1];
+      direction[j + 1] = value / d[j][j];
+      sum += direction[j + 1];
+    }
+    return sum;
+  };
   Vector6 rhs = -points_[0];
   for (int j = 0; j < columns; ++j) {
     double tail = 0.0;
     for (int i = j; i < 6; ++i) tail += d[j][i] * d[j][i];
-    if (!(tail > tiny)) return false;
+    if (!(tail > tiny)) {  // column j is a combination of those before it
+      const double sum = solve(j, d[j]);
+      direction[0] = 1.0 - sum;
+      direction[j + 1] = -1.0;
+      for (int k = j + 2; k < size_; ++k) direction[k] = 0.0;
+      return false;
+    }
     const double alpha = d[j][j] > 0.0 ? -std::sqrt(tail) : std::sqrt(tail);
     d[j][j] -= alpha;  // d[j][j..] is now the reflector
     const double beta = 1.0 / (alpha * d[j][j]);
@@ -89,14 +111,8 @@ bool Corral::CalcAffineMinimum(std::array<double, 8>& weights) const {
     reflect(rhs);
     d[j][j] = alpha;
   }
-  double sum = 0.0;
-  for (int j = columns - 1; j >= 0; --j) {
-    double value = rhs[j];
-    for (int k = j + 1; k < columns; ++k) value -= d[k][j] * weights[k + 1];
-    weights[j + 1] = value / d[j][j];
-    sum += weights[j + 1];
-  }
-  weights[0] = 1.0 - sum;
+  direction[0] = 1.0 - solve(columns, rhs);
+  for (int i = 0; i < size_; ++i) direction[i] -= weights_[i];
   return true;
 }
 

@@ -49,16 +49,18 @@ class Corral {
   Vector6& free_point() { return points_[size_]; }
   void AddPoint() { weights_[size_++] = 0.0; }
 
-  /// Moves the weights to those of smallest norm, leaving out points that these do not need; false
-  /// if the points are affinely dependent to working precision.
-  bool Reduce();
+  /// Moves the weights to those of smallest norm, leaving out points that these do not need.
+  void Reduce();
 
   Vector6 CalcPoint() const;
   /// Copies slots and weights.
   void Describe(MinNormPoint* point) const;
 
  private:
-  bool CalcAffineMinimum(std::array<double, 8>& weights) const;
+  // The change of weights that leads to the affine minimum; or, and then false, one that moves
+  // nothing, because the points are affinely dependent to working precision.
+  bool CalcDirection(std::array<double, 8>& direction) const;
+  bool StepAndDrop(const std::array<double, 8>& direction, double longest);
   void Remove(int index);
 
   int size_ = 1;
@@ -109,7 +111,7 @@ MinNormPoint FindMinNormPoint(const Vector6& start, Support&& support,
       return result;
     }
     corral.AddPoint();
-    if (!corral.Reduce()) break;
+    corral.Reduce();
   }
   result.status = result.lower_bound > 0.0 ? Status::kSeparated : Status::kStalled;
   return result;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "app/core/error.h"
 #include "app/core/text.h"
@@ -32,12 +34,20 @@ namespace {
 
 using internal::ScaledContact;
 
-// Distances from the origin, as shares of f_max: at most the first counts as zero; at least the
-// second is a proof of separation, and rounding is well below it. What falls between the two (a
-// stalled iteration) is decided by the third.
-constexpr double kZero = 1e-10;
-constexpr double kApart = 1e-12;
-constexpr double kStalledZero = 1e-9;
+// What counts as zero, for a set whose forces are at most `cap` and that has `carried` to balance
+// [N]: far below both, and above rounding.
+double ZeroDistance(double cap, double carried) {
+  return std::max(1e-14 * cap, std::min(1e-10 * cap, 1e-6 * carried));
+}
+
+// The same where iterations stall because the origin lies on the set's curved boundary.
+double StalledZeroDistance(double cap, double carried) {
+  return std::min(1e-7 * cap, 1e-4 * carried);
+}
+
+// Force caps to try before f_max, as multiples of what has to be carried: a cap far beyond need
+// costs digits.
+constexpr std::array kCaps{1e2, 1e4, std::numeric_limits<double>::infinity()};
 
 // The net wrenches of all admissible forces and one fixed load, by their support function.
 // `forces`, when given, keeps the forces behind each slot's point: slot by slot, contact by
@@ -47,6 +57,8 @@ struct AdmissibleWrenches {
   const WrenchConfig& config;
   Vector6 load = Vector6::Zero();
   std::vector<Vector3>* forces = nullptr;
+  double cap = 0.0;          // in place of f_max
+  bool cap_matters = false;  // in the latest direction
 
   Vector6 Start() const {
     Vector6 point = load;
@@ -58,12 +70,14 @@ struct AdmissibleWrenches {
     return point;
   }
 
-  void operator()(const Vector6& direction, int slot, Vector6& point) const {
+  void operator()(const Vector6& direction, int slot, Vector6& point) {
     point = load;
+    cap_matters = false;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       double value = 0.0;
       const Vector3 unit = CalcConeSupport(contacts[i], config.mu, direction, &value);
-      const Vector3 f = (value > 0.0 ? config.f_max : config.f_min) * unit;
+      cap_matters = cap_matters || value > 0.0;
+      const Vector3 f = (value > 0.0 ? cap : config.f_min) * unit;
       point += CalcWrenchOf(contacts[i], f);
       if (forces) (*forces)[slot * contacts.size() + i] = f;
     }
@@ -102,18 +116,25 @@ Vector6 WeightLoad(const WrenchConfig& config) {
   return load;
 }
 
-MinNormPoint FindBalance(const AdmissibleWrenches& wrenches) {
-  MinNormConfig solver;
-  solver.tolerance = kZero * wrenches.config.f_max;
-  solver.separation = kApart * wrenches.config.f_max;
-  return FindMinNormPoint(wrenches.Start(), wrenches, solver);
-}
-
-bool HoldsOrigin(const MinNormPoint& point, const WrenchConfig& config) {
-  if (point.status != MinNormPoint::Status::kStalled) {
-    return point.status == MinNormPoint::Status::kContainsOrigin;
+// Whether the set holds the origin; `point` says how.
+bool FindBalance(AdmissibleWrenches& wrenches, MinNormPoint& point) {
+  using Status = MinNormPoint::Status;
+  const WrenchConfig& config = wrenches.config;
+  const double carried = std::max(config.f_min, wrenches.load.norm());
+  for (const double multiple : kCaps) {
+    wrenches.cap = carried > 0.0 ? std::min(config.f_max, multiple * carried) : config.f_max;
+    MinNormConfig solver;
+    solver.tolerance = ZeroDistance(wrenches.cap, carried);
+    solver.separation = std::max(1e-15 * wrenches.cap, 1e-2 * solver.tolerance);
+    point = FindMinNormPoint(wrenches.Start(), wrenches, solver);
+    if (point.status == Status::kContainsOrigin) return true;
+    if (point.status == Status::kStalled &&
+        point.v.norm() <= StalledZeroDistance(wrenches.cap, carried)) {
+      return true;
+    }
+    if (!wrenches.cap_matters || wrenches.cap == config.f_max) return false;
   }
-  return point.v.norm() <= kStalledZero * config.f_max;
+  return false;
 }
 
 void RequireFinite(const char* field, double value, double low, const char* expected) {
@@ -154,11 +175,11 @@ WrenchStatus CalcWrenchStatus(std::span<const WrenchContact> contacts, const Wre
   config.Validate();
   const ScaledContacts scaled(contacts, config.torque_scale);
   AdmissibleWrenches wrenches{scaled.span(), config};
-  if (!HoldsOrigin(FindBalance(wrenches), config)) return WrenchStatus::kNoInternalForces;
+  MinNormPoint point;
+  if (!FindBalance(wrenches, point)) return WrenchStatus::kNoInternalForces;
   wrenches.load = WeightLoad(config);
-  if (wrenches.load.isZero(0.0)) return WrenchStatus::kFeasible;
-  return HoldsOrigin(FindBalance(wrenches), config) ? WrenchStatus::kFeasible
-                                                    : WrenchStatus::kWeightNotBalanced;
+  if (wrenches.load.isZero(0.0) || FindBalance(wrenches, point)) return WrenchStatus::kFeasible;
+  return WrenchStatus::kWeightNotBalanced;
 }
 
 WrenchResult CalcWrench(std::span<const WrenchContact> contacts, const WrenchConfig& config) {
@@ -166,16 +187,16 @@ WrenchResult CalcWrench(std::span<const WrenchContact> contacts, const WrenchCon
   const ScaledContacts scaled(contacts, config.torque_scale);
   const std::size_t count = contacts.size();
   std::vector<Vector3> slot_forces(8 * count);
-  AdmissibleWrenches wrenches{scaled.span(), config, Vector6::Zero(), &slot_forces};
+  AdmissibleWrenches wrenches{scaled.span(), config};
+  wrenches.forces = &slot_forces;
 
   WrenchResult result;
-  MinNormPoint point = FindBalance(wrenches);
+  MinNormPoint point;
   result.status = WrenchStatus::kNoInternalForces;
-  if (HoldsOrigin(point, config)) {
+  if (FindBalance(wrenches, point)) {
     wrenches.load = WeightLoad(config);
-    point = FindBalance(wrenches);
     result.status =
-        HoldsOrigin(point, config) ? WrenchStatus::kFeasible : WrenchStatus::kWeightNotBalanced;
+        FindBalance(wrenches, point) ? WrenchStatus::kFeasible : WrenchStatus::kWeightNotBalanced;
   }
 
   result.forces = MatrixX3::Zero(static_cast<int>(count), 3);

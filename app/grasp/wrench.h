@@ -67,8 +67,9 @@ struct WrenchResult {
 /// The cones are exact, not polyhedral: all net wrenches of admissible forces form a compact convex
 /// set with a support function in closed form, and the question is whether that set holds the
 /// origin, which FindMinNormPoint answers, for each verdict with a proof: forces, or a separating
-/// hyperplane. Sets whose distance from the origin is below 1e-9 f_max count as holding it.
-/// No dependence on a choice of tangent axes; a few microseconds.
+/// hyperplane. What misses balance by less than 1e-10 of the cap counts as balanced; where the
+/// origin lies on the set's boundary to within rounding, 1e-7. No dependence on a choice of tangent
+/// axes; a few microseconds.
 /// @throws InputError for bad contacts (none, not finite, a zero normal) or a bad config.
 WrenchStatus CalcWrenchStatus(std::span<const WrenchContact> contacts, const WrenchConfig& config);
 

@@ -92,6 +92,11 @@ TEST(MarginTest, HullsWithoutInteriorHaveMarginZeroOrLess) {
   std::vector<WrenchContact> line = pinch;  // three contacts on one line still turn about it
   line.push_back({{0.01, 0, 0}, {0, 1, 0}});
   EXPECT_LE(CalcMargin(line, 0.8, 0.1), 0.0);
+  // A pinch and a third contact whose torque about the pinch's line has one sign only: the hull has
+  // an interior, and the origin is on its boundary.
+  std::vector<WrenchContact> third = pinch;
+  third.push_back({{0, 0.1, 0}, {0, 0, 1}});
+  EXPECT_EQ(CalcMargin(third, 0.8, 0.1), 0.0);
   EXPECT_EQ(CalcMargin(Ring(4, 0.05), 0.0, 0.1), 0.0);  // frictionless in a plane
   EXPECT_LT(CalcMargin({pinch.data(), 1}, 0.8, 0.1), 0.0);
 }

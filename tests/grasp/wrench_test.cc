@@ -33,6 +33,26 @@ Vector6 NetWrench(const std::vector<WrenchContact>& contacts, const WrenchConfig
   return net;
 }
 
+// The least that the net wrench of admissible forces, weight included, has along a direction: each
+// cone as a ring of 720 forces, at the floor and at the cap.
+double CalcLeastAlong(const std::vector<WrenchContact>& contacts, const WrenchConfig& config,
+                      const Vector6& direction) {
+  double least = direction.head<3>().dot(config.mass * config.gravity);
+  for (const WrenchContact& contact : contacts) {
+    const Matrix3 R = FrameFromNormal(contact.n.normalized());
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 720; ++k) {
+      const double angle = k * kPi / 360;
+      const Vector3 f = R * Vector3(config.mu * std::cos(angle), config.mu * std::sin(angle), 1.0);
+      const double along = direction.head<3>().dot(f) +
+                           direction.tail<3>().dot(contact.p.cross(f)) / config.torque_scale;
+      smallest = std::min({smallest, config.f_min * along, config.f_max * along});
+    }
+    least += smallest;
+  }
+  return least;
+}
+
 // A pinch along x: contacts at +-a on faces whose normals are turned by `tilt` about y.
 std::vector<WrenchContact> Pinch(double a, double tilt) {
   const Vector3 n(std::cos(tilt), 0.0, std::sin(tilt));
@@ -97,24 +117,9 @@ TEST(WrenchTest, EveryVerdictComesWithItsProof) {
       EXPECT_LE(NetWrench(contacts, config, result.forces).norm(), 1e-8 * config.f_max);
       continue;
     }
-    // The separating direction: no ring of forces, at the floor or the cap, reaches below zero.
     if (result.status == WrenchStatus::kNoInternalForces) config.mass = 0.0;
     EXPECT_NEAR(NetWrench(contacts, config, result.forces).norm(), result.residual, 1e-9);
-    double lowest = result.separating.head<3>().dot(config.mass * config.gravity);
-    for (const WrenchContact& contact : contacts) {
-      const Matrix3 R = FrameFromNormal(contact.n.normalized());
-      double smallest = std::numeric_limits<double>::infinity();
-      for (int k = 0; k < 720; ++k) {
-        const Vector3 f = R * Vector3(config.mu * std::cos(k * kPi / 360),
-                                      config.mu * std::sin(k * kPi / 360), 1);
-        const double along =
-            result.separating.head<3>().dot(f) +
-            result.separating.tail<3>().dot(contact.p.cross(f)) / config.torque_scale;
-        smallest = std::min({smallest, config.f_min * along, config.f_max * along});
-      }
-      lowest += smallest;
-    }
-    EXPECT_GT(lowest, 0.0);
+    EXPECT_GT(CalcLeastAlong(contacts, config, result.separating), 0.0);
   }
 }
 
@@ -298,6 +303,72 @@ TEST(WrenchTest, TheVerdictIsMonotoneInFrictionAndInTheForceRange) {
     wider.f_min *= 0.5;
     EXPECT_EQ(CalcWrenchStatus(contacts, wider), WrenchStatus::kFeasible);
   }
+}
+
+TEST(WrenchTest, SetsOnTheBoundaryHaveAVerdictAndItsProof) {
+  // Points on a grid, normals along axes, friction 1: cones that just touch are common here, and
+  // forces that balance only at the cones' very edge count as balancing.
+  Rng rng(8, RngStream::kTest);
+  std::array<int, 3> verdicts{};
+  for (int set = 0; set < 3000; ++set) {
+    std::vector<WrenchContact> contacts = SampleContactSet(rng);
+    for (WrenchContact& contact : contacts) {
+      int axis = 0;
+      contact.n.cwiseAbs().maxCoeff(&axis);
+      contact.n = std::copysign(1.0, contact.n[axis]) * Vector3::Unit(axis);
+      for (int k = 0; k < 3; ++k) contact.p[k] = std::round(contact.p[k] * 50.0) / 50.0;
+    }
+    WrenchConfig config = SampleWrenchConfig(rng);
+    config.mu = 1.0;
+    const WrenchResult result = CalcWrench(contacts, config);
+    ++verdicts[static_cast<int>(result.status)];
+    if (result.feasible()) {
+      EXPECT_LE(NetWrench(contacts, config, result.forces).norm(), 1e-7 * config.f_max);
+    } else {
+      if (result.status == WrenchStatus::kNoInternalForces) config.mass = 0.0;
+      EXPECT_GT(CalcLeastAlong(contacts, config, result.separating), 0.0);
+    }
+  }
+  for (const int count : verdicts) EXPECT_GT(count, 100);
+}
+
+TEST(WrenchTest, AForceCapFarBeyondNeedBlursNothing) {
+  // 10 g at a pinch whose faces lean apart just too far: no force helps, 1 kN or 1 GN.
+  WrenchConfig config = Weightless(0.5);
+  config.mass = 0.01;
+  for (const double cap : {12.0, 1e3, 1e6, 1e9}) {
+    config.f_max = cap;
+    EXPECT_EQ(CalcWrenchStatus(Pinch(0.03, 1.001 * std::atan(0.5)), config),
+              WrenchStatus::kNoInternalForces)
+        << cap;
+    EXPECT_EQ(CalcWrenchStatus(Pinch(0.03, 0.999 * std::atan(0.5)), config),
+              WrenchStatus::kFeasible)
+        << cap;
+    // And none makes a pinch hold a weight that turns about it.
+    std::vector<WrenchContact> beside = Pinch(0.03, 0.0);
+    for (WrenchContact& contact : beside) contact.p.y() += 1e-3;
+    EXPECT_EQ(CalcWrenchStatus(beside, config), WrenchStatus::kWeightNotBalanced) << cap;
+  }
+}
+
+TEST(WrenchTest, AnyNumberOfContactsIsASet) {
+  const std::vector<WrenchContact> one{{{0, 0, -0.05}, {0, 0, 1}}};
+  EXPECT_EQ(CalcWrench(one, Weightless(0.8)).status, WrenchStatus::kNoInternalForces);
+  WrenchConfig config = Weightless(0.8);
+  config.f_min = 0.0;  // a finger that need not push
+  config.mass = 0.1;
+  const WrenchResult carried = CalcWrench(one, config);
+  ASSERT_TRUE(carried.feasible());
+  EXPECT_LT((carried.forces.row(0) - Vector3(0, 0, 0.981).transpose()).norm(), 1e-9);
+  std::vector<WrenchContact> many;
+  for (int k = 0; k < 12; ++k) {
+    const Vector3 d(std::cos(k * kPi / 6), std::sin(k * kPi / 6), 0.0);
+    many.push_back({0.05 * d, -d});
+  }
+  config.f_min = 0.1;
+  const WrenchResult shared = CalcWrench(many, config);
+  ASSERT_TRUE(shared.feasible());
+  for (int k = 0; k < 12; ++k) EXPECT_NEAR(shared.forces(k, 2), 0.981 / 12, 1e-9);
 }
 
 TEST(WrenchTest, BadInputIsAnInputErrorThatNamesTheField) {
