@@ -45,6 +45,19 @@ std::string JoinFingers(const std::vector<GraspContact>& contacts) {
   return names;
 }
 
+// What overlaps in the best attempt.
+std::string DescribeOverlap(const IkResult& ik, const GraspWorld& world) {
+  const std::vector<HandCapsule>& capsules = world.ik().hand().capsules;
+  if (ik.clearance >= 0.0 || !ik.closest) {
+    return fmt::format("a fingertip would enter the object by {:.1f} mm", 1e3 * ik.contact_overlap);
+  }
+  const bool self = ik.closest->pair == HandPair::kSelf;
+  return fmt::format(
+      "{} would overlap {} by {:.1f} mm", capsules[ik.closest->capsule].name,
+      self ? capsules[ik.closest->other].name : world.scene().bodies[ik.closest->other].name,
+      -1e3 * ik.clearance);
+}
+
 bool TipsTooClose(const std::vector<GraspContact>& contacts, double min_distance) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
@@ -75,7 +88,7 @@ bool GraspResult::uses(Finger finger) const {
                      [&](const GraspContact& contact) { return contact.finger == finger; });
 }
 
-std::string Explain(const GraspResult& result) {
+std::string Explain(const GraspResult& result, const GraspWorld& world) {
   std::string fingers = JoinFingers(result.contacts);
   switch (result.status) {
     case GraspStatus::kFeasible:
@@ -100,8 +113,8 @@ std::string Explain(const GraspResult& result) {
       return fmt::format("{}: a finger would have to touch at {:.0f} degrees", fingers,
                          RadToDeg(result.kinematics->ik.cone_angle));
     case GraspStatus::kCollision:
-      return fmt::format("{}: within reach, but something is in the way ({:.1f} mm of overlap)",
-                         fingers, -1e3 * result.kinematics->ik.clearance);
+      return fmt::format("{}: within reach, but {}", fingers,
+                         DescribeOverlap(result.kinematics->ik, world));
     case GraspStatus::kNotCertified:
       return fmt::format("{}: the only poses found are denied by the collision check", fingers);
   }

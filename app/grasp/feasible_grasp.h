@@ -44,8 +44,9 @@ struct GraspResult {
   std::optional<KinematicResult> kinematics;
 };
 
-/// One sentence for a person: which fingers, and what stands in the way.
-std::string Explain(const GraspResult& result);
+/// One sentence for a person: which fingers, and what stands in the way. `world` is that of the
+/// test.
+std::string Explain(const GraspResult& result, const GraspWorld& world);
 
 /// Tests these contacts, all of them: the design's "feasible grasp". Deterministic.
 /// @param X_WB  every body's pose, the object first.

@@ -52,6 +52,7 @@ GraspWorld::GraspWorld(const Scene& scene, const HandModel& hand,
       ik_(hand, scene_),
       object_(scene_.object().shape),
       environment_(scene_),
+      surface_config_(surface),
       surface_(MakeSurfacePoints(scene_.object().shape, object_, surface)),
       reach_(MeasureTipReach(hand)) {
   PREGRASP_CHECK(scene_.object().movable());

@@ -45,6 +45,7 @@ class GraspWorld {
   const SignedDistance& object() const { return object_; }
   const EnvironmentDistance& environment() const { return environment_; }
   const SurfacePoints& surface() const { return surface_; }
+  const SurfacePointsConfig& surface_config() const { return surface_config_; }
   const TipReach& reach() const { return reach_; }
   /// The largest distance of the object's surface from its centre of mass [m].
   double object_radius() const { return object_radius_; }
@@ -67,6 +68,7 @@ class GraspWorld {
   IkSolver ik_;
   SignedDistance object_;
   EnvironmentDistance environment_;
+  SurfacePointsConfig surface_config_;
   SurfacePoints surface_;
   TipReach reach_;
   double object_radius_ = 0.0;

@@ -5,6 +5,32 @@
 
 namespace pregrasp {
 
+namespace {
+
+// The first of the generated sets that is a grasp.
+std::optional<GraspResult> FindFeasible(const GraspWorld& world,
+                                        const StartCertificateConfig& config,
+                                        const std::vector<std::vector<GraspContact>>& generated,
+                                        const std::vector<RigidTransform>& X_WB, ThreadPool& pool,
+                                        GraspSearchStats* stats) {
+  const int count = static_cast<int>(generated.size());
+  std::vector<std::optional<GraspResult>> results(count);
+  pool.ParallelFor(count, [&](int i, int) {
+    const Rng rng(config.seed, RngStream::kCertificate, 0, i);
+    GraspResult result = TestGrasp(world, config.search.grasp, generated[i], X_WB, rng);
+    if (result.feasible()) results[i] = std::move(result);
+  });
+  stats->tried += count;
+  for (std::optional<GraspResult>& result : results) {
+    if (!result) continue;
+    stats->feasible = 1;
+    return std::move(result);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 const char* StartVerdictName(StartVerdict verdict) {
   constexpr const char* kNames[] = {"certified", "searched", "graspable"};
   return kNames[static_cast<int>(verdict)];
@@ -15,6 +41,7 @@ StartCertificateConfig::StartCertificateConfig() {
   search.max_solves = 500;
   search.grasp.kinematics.ik.max_starts = 20;
   search.reach_starts = 20;
+  search.sampler.slack.environment = search.grasp.kinematics.ik.tip_tolerance;
 }
 
 void StartCertificateConfig::Validate() const {
@@ -48,6 +75,7 @@ std::vector<WrenchContact> FindReachableContacts(const GraspWorld& world,
 }
 
 StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateConfig& config,
+                              const std::vector<std::vector<GraspContact>>& generated,
                               ThreadPool& pool,
                               const std::function<void(const GraspSearchStats&)>& progress) {
   config.Validate();
@@ -73,12 +101,18 @@ StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateCon
       return certificate;
     }
   }
-  GraspSearchResult search =
-      SearchGrasps(world, config.search, {}, X_WB, config.seed, pool, progress);
-  certificate.search = search.stats;
-  if (!search.found.empty()) {
+  std::optional<GraspResult> example =
+      FindFeasible(world, config, generated, X_WB, pool, &certificate.search);
+  if (!example) {
+    GraspSearchResult search =
+        SearchGrasps(world, config.search, {}, X_WB, config.seed, pool, progress);
+    search.stats.tried += certificate.search.tried;
+    certificate.search = search.stats;
+    if (!search.found.empty()) example = std::move(search.found.front());
+  }
+  if (example) {
     certificate.verdict = StartVerdict::kGraspable;
-    certificate.example = std::move(search.found.front());
+    certificate.example = std::move(example);
   }
   return certificate;
 }

@@ -50,8 +50,12 @@ struct StartCertificate {
 /// Whether the object is ungraspable at the scene's start: the design's two ways.
 /// First a proof, at all surface points that a fingertip sphere can reach (the smallest sphere, let
 /// into surroundings and object as far as kinematic feasibility would), with circular cones and no
-/// limit on forces. Without a proof, a search of contact sets put to the full test.
+/// limit on forces. Without a proof, the generated sets, if any, and then a search of contact sets
+/// are put to the full test.
+/// @param generated  sets that a grasp generator proposes for this start; ring and little may be
+///                   dropped.
 StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateConfig& config,
+                              const std::vector<std::vector<GraspContact>>& generated,
                               ThreadPool& pool,
                               const std::function<void(const GraspSearchStats&)>& progress = {});
 

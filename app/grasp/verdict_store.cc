@@ -217,12 +217,19 @@ StartCertificate ToCertificate(const Json& json) {
 
 std::string StartVerdictKey(const Scene& scene, const HandModel& hand,
                             const SurfacePointsConfig& surface,
-                            const StartCertificateConfig& config) {
+                            const StartCertificateConfig& config,
+                            const std::vector<std::vector<GraspContact>>& generated) {
   KeyText out;
   out << "start" << kVersion;
   AddScene(scene, out);
   AddHand(hand, out);
   AddConfig(surface, config, out);
+  for (const std::vector<GraspContact>& contacts : generated) {
+    out << static_cast<double>(contacts.size());
+    for (const GraspContact& contact : contacts) {
+      out << static_cast<double>(contact.finger) << contact.p_OC << contact.nhat_O;
+    }
+  }
   return Sha256(out.text());
 }
 
@@ -275,6 +282,23 @@ bool StoreStartVerdict(const std::filesystem::path& folder, const std::string& k
     return false;
   }
   return true;
+}
+
+StartCertificate FindStartVerdict(const GraspWorld& world, const StartCertificateConfig& config,
+                                  const std::vector<std::vector<GraspContact>>& generated,
+                                  const std::vector<std::filesystem::path>& folders,
+                                  ThreadPool& pool,
+                                  const std::function<void(const GraspSearchStats&)>& progress) {
+  const std::string key =
+      StartVerdictKey(world.scene(), world.ik().hand(), world.surface_config(), config, generated);
+  for (const std::filesystem::path& folder : folders) {
+    if (std::optional<StartCertificate> known = LoadStartVerdict(folder, key)) return *known;
+  }
+  StartCertificate certificate = CertifyStart(world, config, generated, pool, progress);
+  if (!folders.empty() && !folders.back().empty()) {
+    StoreStartVerdict(folders.back(), key, certificate);
+  }
+  return certificate;
 }
 
 }  // namespace pregrasp

@@ -9,11 +9,13 @@
 namespace pregrasp {
 
 /// What a start verdict depends on, as 64 hex digits: shapes, poses, the object's mass and centre
-/// of mass, gravity, fingertips, the hand, the configuration, and the version of the test. Names,
-/// cameras, friction between bodies and anything else may change without a new verdict.
+/// of mass, gravity, fingertips, the hand, generated sets, the configuration, and the version of
+/// the test. Names, cameras, friction between bodies and anything else may change without a new
+/// verdict.
 std::string StartVerdictKey(const Scene& scene, const HandModel& hand,
                             const SurfacePointsConfig& surface,
-                            const StartCertificateConfig& config);
+                            const StartCertificateConfig& config,
+                            const std::vector<std::vector<GraspContact>>& generated = {});
 
 /// Where verdicts are kept between runs: $XDG_CACHE_HOME/pregrasp/verdicts, or
 /// ~/.cache/pregrasp/verdicts; empty when neither variable is set.
@@ -28,5 +30,12 @@ std::optional<StartCertificate> LoadStartVerdict(const std::filesystem::path& fo
 /// store and load at the same time. The cache is a convenience: where it cannot be written, false.
 bool StoreStartVerdict(const std::filesystem::path& folder, const std::string& key,
                        const StartCertificate& certificate);
+
+/// CertifyStart, unless one of `folders` knows the verdict; a new one is stored in the last.
+StartCertificate FindStartVerdict(
+    const GraspWorld& world, const StartCertificateConfig& config,
+    const std::vector<std::vector<GraspContact>>& generated,
+    const std::vector<std::filesystem::path>& folders, ThreadPool& pool,
+    const std::function<void(const GraspSearchStats&)>& progress = {});
 
 }  // namespace pregrasp

@@ -150,7 +150,7 @@ void StartCertificateOf(benchmark::State& state, const Scene& scene) {
   const GraspWorld world(scene, ShadowHand());
   ThreadPool pool(1);
   StartCertificate certificate;
-  for (auto _ : state) certificate = CertifyStart(world, {}, pool);
+  for (auto _ : state) certificate = CertifyStart(world, {}, {}, pool);
   state.SetLabel(StartVerdictName(certificate.verdict));
   state.counters["tried"] = certificate.search.tried;
 }

@@ -89,18 +89,24 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
   const std::vector<RigidTransform> start = world.StartPoses();
   GraspConfig config;
   config.kinematics.ik.max_starts = 5;
+  std::string sentence;
   const auto status = [&](const std::vector<GraspContact>& contacts) {
     const GraspResult result = TestContacts(world, config, contacts, start, Rng(1, RngStream::kIk));
     EXPECT_EQ(result.feasible(), result.status == GraspStatus::kFeasible);
-    EXPECT_FALSE(Explain(result).empty());
+    sentence = Explain(result, world);
     return result.status;
   };
   EXPECT_EQ(status({OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, -1, 0, 0),
                     OnSide(Finger::kMiddle, -1, 0.01, 0)}),
             GraspStatus::kTipsTooClose);
+  EXPECT_EQ(sentence,
+            "thumb, index, middle: the fingertips of index and middle would be 10.0 mm apart");
   EXPECT_EQ(status({OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, 1, 0.02, 0),
                     OnSide(Finger::kMiddle, 1, -0.02, 0)}),
             GraspStatus::kNoInternalForces);
+  // Three fingers push the same way with 0.5 N at least.
+  EXPECT_EQ(sentence,
+            "thumb, index, middle: no forces within the cones cancel out; 1.50 N are missing");
   // The centre of mass lies far below the line on which they press.
   Scene heavy = FreeCartonScene();
   heavy.object().mass_properties->mass = 5.0;
@@ -119,6 +125,7 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
   EXPECT_EQ(status({OnSide(Finger::kThumb, 1, 0, -0.099), OnSide(Finger::kIndex, -1, 0.012, -0.099),
                     OnSide(Finger::kMiddle, -1, -0.012, -0.099)}),
             GraspStatus::kCollision);
+  EXPECT_NE(sentence.find("would overlap table by"), std::string::npos) << sentence;
 }
 
 TEST(FeasibleGraspTest, RingAndLittleMayBeDroppedButNoOther) {

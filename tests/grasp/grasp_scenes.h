@@ -53,7 +53,7 @@ inline Scene RulerScene(double overhang) {
 inline Scene BookScene() {
   const Vector3 size(0.155, 0.030, 0.230);
   Scene scene = MakeScene("book", Box{size}, 0.6, Shift(0, 0, 0.115));
-  scene.bodies.push_back(FixedBox("shelf", {0.8, 0.8, 0.02}, {-0.2, 0, -0.01}));
+  scene.bodies.push_back(FixedBox("table", {0.8, 0.8, 0.02}, {-0.2, 0, -0.01}));
   scene.bodies.push_back(FixedBox("left", size, {0, 0.031, 0.115}));
   scene.bodies.push_back(FixedBox("right", size, {0, -0.031, 0.115}));
   scene.bodies.push_back(FixedBox("wall", {0.02, 0.8, 0.4}, {-0.0775 - 0.005 - 0.01, 0, 0.2}));
@@ -87,7 +87,7 @@ inline Scene MarkerScene() {
 inline Scene CartonScene() {
   const Vector3 size(0.07, 0.07, 0.20);
   Scene scene = MakeScene("carton", Box{size}, 0.53, Shift(0, 0, 0.1));
-  scene.bodies.push_back(FixedBox("shelf", {0.8, 0.8, 0.02}, {-0.2, 0, -0.01}));
+  scene.bodies.push_back(FixedBox("table", {0.8, 0.8, 0.02}, {-0.2, 0, -0.01}));
   scene.bodies.push_back(FixedBox("left", size, {0, 0.072, 0.1}));
   scene.bodies.push_back(FixedBox("right", size, {0, -0.072, 0.1}));
   scene.bodies.push_back(FixedBox("wall", {0.02, 0.8, 0.4}, {-0.035 - 0.002 - 0.01, 0, 0.2}));

@@ -12,7 +12,7 @@ StartCertificate Certify(const Scene& scene, int max_sets = 20000) {
   ThreadPool pool(2);
   StartCertificateConfig config;
   config.search.max_sets = max_sets;
-  return CertifyStart(GraspWorld(scene, ShadowHand()), config, pool);
+  return CertifyStart(GraspWorld(scene, ShadowHand()), config, {}, pool);
 }
 
 void ExpectProof(const StartCertificate& certificate) {
@@ -79,6 +79,27 @@ TEST(StartCertificateTest, MoreFrictionThanMuStarUndoesTheProof) {
   Scene scene = BookScene();
   scene.fingertips.friction = 1.3;
   EXPECT_NE(Certify(scene, 700).verdict, StartVerdict::kCertified);
+}
+
+TEST(StartCertificateTest, AGeneratedGraspIsFoundWithoutASearch) {
+  const StartCertificate searched = Certify(RulerScene(0.06));
+  ASSERT_TRUE(searched.example.has_value());
+  const std::vector<GraspContact> grasp = searched.example->contacts;
+  std::vector<GraspContact> one_sided = grasp;
+  for (GraspContact& contact : one_sided) {
+    contact.p_OC.z() = 0.0015;
+    contact.nhat_O = Vector3::UnitZ();
+  }
+  ThreadPool pool(2);
+  StartCertificateConfig config;
+  config.search.grasp.kinematics.ik.max_starts = 60;
+  const StartCertificate generated =
+      CertifyStart(GraspWorld(RulerScene(0.06), ShadowHand()), config, {one_sided, grasp}, pool);
+  EXPECT_EQ(generated.verdict, StartVerdict::kGraspable);
+  EXPECT_EQ(generated.search.tried, 2);
+  EXPECT_EQ(generated.search.drawn, 0);
+  ASSERT_TRUE(generated.example.has_value());
+  EXPECT_EQ(generated.example->contacts[0].p_OC, grasp[0].p_OC);
 }
 
 TEST(StartCertificateTest, ASearchOfFewerThan700SetsIsRefused) {

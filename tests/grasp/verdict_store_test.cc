@@ -154,6 +154,27 @@ TEST_F(VerdictStoreTest, AFolderThatCannotBeMadeIsNoError) {
   EXPECT_FALSE(StoreStartVerdict(file / "below", kKey, MakeCertified()));
 }
 
+TEST_F(VerdictStoreTest, AVerdictIsComputedOnceAndThenKnown) {
+  const GraspWorld world(RulerScene(-0.01), ShadowHand());
+  ThreadPool pool(1);
+  const fs::path shipped = folder_ / "shipped", cache = folder_ / "cache";
+  const StartCertificateConfig config;
+  const auto find = [&] { return FindStartVerdict(world, config, {}, {shipped, cache}, pool); };
+  EXPECT_EQ(find().verdict, StartVerdict::kCertified);
+  EXPECT_FALSE(fs::exists(shipped));
+  const std::string key = StartVerdictKey(world.scene(), ShadowHand(), {}, config);
+  ASSERT_TRUE(fs::exists(cache / (key + ".json")));
+  // What is stored is believed: a marked verdict comes back, and the first folder decides.
+  StartCertificate marked = *LoadStartVerdict(cache, key);
+  marked.surface_points = 12345;
+  ASSERT_TRUE(StoreStartVerdict(cache, key, marked));
+  EXPECT_EQ(find().surface_points, 12345);
+  marked.surface_points = 54321;
+  ASSERT_TRUE(StoreStartVerdict(shipped, key, marked));
+  EXPECT_EQ(find().surface_points, 54321);
+  EXPECT_EQ(FindStartVerdict(world, config, {}, {}, pool).verdict, StartVerdict::kCertified);
+}
+
 TEST(StartVerdictKeyTest, ItChangesWithWhatTheVerdictDependsOnAndNothingElse) {
   const auto key = [](const Scene& scene, const StartCertificateConfig& config = {}) {
     return StartVerdictKey(scene, ShadowHand(), {}, config);
@@ -189,6 +210,7 @@ TEST(StartVerdictKeyTest, ItChangesWithWhatTheVerdictDependsOnAndNothingElse) {
   config.seed = 1;
   config.search.max_sets += 1;
   EXPECT_TRUE(keys.insert(key(scene, config)).second);
+  EXPECT_TRUE(keys.insert(StartVerdictKey(scene, ShadowHand(), {}, {}, {{GraspContact()}})).second);
 }
 
 TEST(VerdictFolderTest, ItFollowsTheCacheVariable) {
