@@ -17,7 +17,8 @@ double EdgeCoverage(double distance) { return std::clamp(0.5 - distance, 0.0, 1.
 }  // namespace
 
 float SrgbFromLinear(float linear) {
-  const float x = std::clamp(linear, 0.0F, 1.0F);
+  if (!(linear > 0.0F)) return 0.0F;  // NaN too
+  const float x = std::min(linear, 1.0F);
   return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1.0F / 2.4F) - 0.055F;
 }
 

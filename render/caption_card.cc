@@ -198,6 +198,7 @@ std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyl
     DrawScale(canvas, {x, y, bar_width, bar_height}, legend.scale);
     y += bar_height;
     for (const auto& [at, text] : legend.ticks) {
+      if (!std::isfinite(at)) continue;
       const double w = text_width(text);
       write(x + std::clamp(std::clamp(at, 0.0, 1.0) * bar_width - 0.5 * w, 0.0,
                            std::max(0.0, width - w)),

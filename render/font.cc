@@ -92,6 +92,7 @@ const Glyph& FontSet::GetGlyph(FontFace face, float size, char32_t character, in
   }
   FT_Face ft = impl_->Sized(face, size);
   Glyph glyph;
+  if (character < U' ') character = U' ';  // line breaks and the like have no picture
   // Light hinting snaps heights to the pixel grid and leaves widths alone.
   if (FT_Load_Char(ft, character, FT_LOAD_TARGET_LIGHT) == 0) {
     glyph.advance = static_cast<float>(ft->glyph->linearHoriAdvance) / 65536.0F;

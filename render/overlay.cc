@@ -115,6 +115,7 @@ class Overlay {
     const Rect picture{0.0, 0.0, canvas_.width(), canvas_.height()};
     std::vector<LabelRequest> requests;
     std::vector<const RenderLabel*> labels;
+    std::vector<std::string> texts;
     int left_out = 0;
     for (const RenderLabel& label : scene_.labels) {
       const auto anchor = view_.Project(label.p_W);
@@ -124,7 +125,10 @@ class Overlay {
         ++left_out;  // a leader into the card would point at its text
         continue;
       }
-      requests.push_back({*anchor, {std::ceil(Width(label.text)) + 2.0 * pad + bar, height}});
+      // A box may take no more than part of the picture's width.
+      texts.push_back(
+          FitText(fonts_, FontFace::kSans, style_.text, label.text, 0.45 * picture.width));
+      requests.push_back({*anchor, {std::ceil(Width(texts.back())) + 2.0 * pad + bar, height}});
       labels.push_back(&label);
     }
     LabelArea area;
@@ -147,7 +151,7 @@ class Overlay {
       canvas_.FillRect({box.x, box.y, bar, box.height}, WithAlpha(labels[i]->color, 1.0F));
       const double cap = fonts_.CapHeight(FontFace::kSans, style_.text);
       canvas_.DrawText(FontFace::kSans, style_.text,
-                       {box.x + bar + pad, box.y + 0.5 * (box.height + cap)}, labels[i]->text,
+                       {box.x + bar + pad, box.y + 0.5 * (box.height + cap)}, texts[i],
                        style_.bright);
     }
     return left_out;

@@ -116,6 +116,35 @@ TEST(RendererTest, AThinRulerCastsAThinShadowThatTouchesIt) {
   EXPECT_GT(Brightness(image, Pixel(scene, {-0.0165, 0, 0})), lit - 8);
 }
 
+TEST(RendererTest, PenumbraeAreSmoothAndWidenWithTheDistanceOfWhatCastsThem) {
+  RenderScene scene = BareTable();
+  scene.bodies.push_back(Body(BoxMesh({0.01, 0.1, 0.16}), {0, 0.05, 0.08}, ObjectColor()));
+  const RenderConfig config{960, 540, RenderQuality::kNormal};
+  const Image image = SharedRenderer().Render(scene, config);
+  const CameraView view = MakeCameraView(scene.camera, config.width, config.height);
+  // Walks along y out of the shadow's side, near the wall and under its upper edge; returns how
+  // many millimetres lie between a tenth and nine tenths of full light.
+  const auto width_mm = [&](double x) {
+    std::vector<int> walk;
+    for (int mm = 30; mm >= -30; --mm) {
+      walk.push_back(Brightness(image, view.Project({x, 1e-3 * mm, 0}).value()));
+    }
+    const int dark = walk.front(), light = walk.back();
+    EXPECT_GT(light, dark + 100);
+    int inside = 0;
+    for (std::size_t i = 1; i < walk.size(); ++i) {
+      EXPECT_GE(walk[i], walk[i - 1] - 3) << "x = " << x << ", step " << i;
+      const double share = static_cast<double>(walk[i] - dark) / (light - dark);
+      inside += share > 0.1 && share < 0.9 ? 1 : 0;
+    }
+    return inside;
+  };
+  const int near = width_mm(0.02), far = width_mm(0.13);
+  EXPECT_LE(near, 4);
+  EXPECT_GE(far, 7);
+  EXPECT_LE(far, 18);
+}
+
 TEST(RendererTest, FlatSurfacesHaveNoAcne) {
   RenderScene scene = BareTable();
   scene.ground = false;
@@ -201,6 +230,58 @@ TEST(RendererTest, AnEmptySceneAndEverySizeGiveAPicture) {
   EXPECT_NO_THROW(SharedRenderer().Render(scene, kSmall));
   scene.camera.p_WCam = {0, 0, -1};  // and up
   EXPECT_NO_THROW(SharedRenderer().Render(scene, kSmall));
+}
+
+TEST(RendererTest, RandomScenesGivePictures) {
+  Rng rng(21);
+  const auto point = [&rng] { return Vector3(rng.Uniform(0.0, 0.4) * rng.Direction()); };
+  const auto color = [&rng] {
+    const auto channel = [&rng] { return static_cast<float>(rng.Uniform(-0.1, 1.2)); };
+    return Rgba{channel(), channel(), channel(), channel()};
+  };
+  const auto small = [&rng](double low, double high) {
+    return static_cast<float>(rng.Uniform(low, high));
+  };
+  for (int seed = 0; seed < 40; ++seed) {
+    RenderScene scene;
+    const auto mesh =
+        std::make_shared<TriangleMesh>(seed % 2 == 0 ? BoxMesh({0.1, 0.2, 0.003}) : BallMesh(0.05));
+    for (std::uint32_t i = rng.UniformInt(8); i > 0; --i) {
+      RenderBody body;
+      body.mesh = i == 3 ? std::make_shared<TriangleMesh>() : mesh;
+      body.X_WB = MakeTransform(rng.Rotation(), point());
+      body.color = color();
+      body.roughness = small(-0.5, 1.5);
+      body.metallic = small(-0.5, 1.5);
+      body.shading = static_cast<Shading>(rng.UniformInt(3));
+      body.smooth = rng.UniformInt(2) == 0;
+      body.edges = rng.UniformInt(2) == 0;
+      if (rng.UniformInt(3) == 0) body.face_colors.assign(body.mesh->F.rows(), color());
+      scene.bodies.push_back(body);
+    }
+    for (std::uint32_t i = rng.UniformInt(4); i > 0; --i) {
+      scene.arrows.push_back(
+          {point(), i == 1 ? Vector3(Vector3::Zero()) : point(), small(-0.001, 0.01), color()});
+      scene.cones.push_back(
+          {point(), i == 1 ? Vector3(Vector3::Zero()) : point(), small(-1, 3), color()});
+      scene.points.push_back({point(), small(-0.01, 0.1), color()});
+      scene.lines.push_back({{point(), point(), point(), point()}, color(), small(-1, 30)});
+      scene.lines.push_back({{point()}, color(), 1.0F});
+      scene.labels.push_back(
+          {point(), std::string(rng.UniformInt(90), i == 1 ? '\xfe' : 'w'), color()});
+    }
+    scene.caption = {"title\nin two lines",
+                     {"", "\t", "a\tb\tc", "x  y", std::string(300, 'm')},
+                     "f",
+                     rng.Uniform(-1, 2)};
+    scene.legend = {"legend", {color()}, {{rng.Uniform(-1, 2), "tick"}}, {{color(), "swatch"}}};
+    scene.camera = {point(), point(), rng.Uniform(1, 120)};
+    if (seed % 3 == 0) scene.to_light_W = rng.Direction();
+    scene.ground = seed % 4 != 0;
+    const RenderConfig config{220 + 3 * seed, 120 + seed, static_cast<RenderQuality>(seed % 3)};
+    const Image image = SharedRenderer().Render(scene, config);
+    EXPECT_EQ(image.rgb, SharedRenderer().Render(scene, config).rgb) << seed;
+  }
 }
 
 TEST(RendererTest, WrongSizesCamerasAndNumbersAreInputErrors) {
