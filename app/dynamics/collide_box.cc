@@ -223,7 +223,10 @@ class BoxPair {
     }
     if (count == 0) return FaceResult::kApart;
     std::array<int, Manifold::kMaxPoints> chosen;
-    const int num_chosen = ChooseFour(points.data(), count, &chosen);
+    Matrix3 R_WT;
+    R_WT << ref.R_WP.col(ix), ref.R_WP.col(iy), s * ref.R_WP.col(i);
+    const int num_chosen =
+        ChooseFour(points.data(), count, Approach(ref, inc, ref.p_WP, R_WT), &chosen);
     for (int n = 0; n < num_chosen; ++n) {
       const PlanarPoint& point = points[chosen[n]];
       Vector3 p_ref;

@@ -134,7 +134,7 @@ class AxisSearch {
     axis->kind = ConvexKind::kCapsule;
     axis->radius = placed.convex->radius;
     axis->half_height = placed.convex->half_height;
-    return {axis, placed.R_WP, placed.p_WP};
+    return {axis, placed.R_WP, placed.p_WP, placed.shift_W, placed.turn_W};
   }
 
   // Edges against edges and rims: climbs from the best direction so far.
@@ -155,7 +155,7 @@ class AxisSearch {
     FindFeature(a_, candidate.nhat_W, &feature_a_);
     FindFeature(b_, -candidate.nhat_W, &feature_b_);
     const OverlapResult result =
-        OverlapFeatures(feature_a_, feature_b_, candidate.nhat_W, margin_, manifold);
+        OverlapFeatures(a_, b_, feature_a_, feature_b_, candidate.nhat_W, margin_, manifold);
     if (candidate.is_face) return result;
     double deepest = kInfinity;
     for (int i = 0; i < manifold->size; ++i) deepest = std::min(deepest, manifold->points[i].phi);

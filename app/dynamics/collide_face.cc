@@ -80,7 +80,8 @@ void AddCapsulePoints(const FacePlane& plane, Manifold* manifold) {
   if (q.half_height > 0.0) plane.Add(p + axis, 1, manifold);
 }
 
-// All vertices near the plane, the lowest first so that a crowd cannot push it out.
+// All vertices near the plane, the lowest first so that a crowd cannot push it out; seen from q's
+// origin.
 void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   constexpr int kMaxVertices = 64;
   const std::vector<Vector3>& vertices = plane.q.convex->polytope->vertices;
@@ -108,7 +109,10 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   std::array<int, Manifold::kMaxPoints> chosen;
   // A handful is taken as it is, without the lowest's copy.
   const int skip = count <= Manifold::kMaxPoints + 1 ? 1 : 0;
-  const int num_chosen = ChooseFour(points.data() + skip, count - skip, &chosen);
+  Matrix3 R_WT;
+  R_WT << plane.a.R_WP.col(ix), plane.a.R_WP.col(iy), plane.s * plane.a.R_WP.col(plane.i);
+  const int num_chosen = ChooseFour(points.data() + skip, count - skip,
+                                    Approach(plane.a, plane.q, plane.q.p_WP, R_WT), &chosen);
   for (int k = 0; k < num_chosen; ++k) {
     const PlanarPoint& point = points[skip + chosen[k]];
     plane.Add(plane.p_AQ + plane.R_AQ * vertices[point.feature], point.feature, manifold);

@@ -32,7 +32,11 @@ bool Overlaps(const CollisionScene::Scratch::Bounds& a, const CollisionScene::Sc
 }
 
 PlacedConvex Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_WB) {
-  return {&convex, R_WB * convex.X_BP.linear(), p_WB + R_WB * convex.X_BP.translation()};
+  PlacedConvex placed;
+  placed.convex = &convex;
+  placed.R_WP = R_WB * convex.X_BP.linear();
+  placed.p_WP = p_WB + R_WB * convex.X_BP.translation();
+  return placed;
 }
 
 }  // namespace
@@ -104,7 +108,10 @@ void CollisionScene::PlaceMovables(const std::vector<BodyKernel>& kernels,
     const CollisionBody& body = bodies_[kernels[i].body];
     const BodyMotion& motion = motions[i];
     for (std::size_t k = 0; k < body.pieces.size(); ++k) {
-      scratch->pieces[body.first_placed + k] = Place(body.pieces[k], motion.R_WB, motion.p_WB);
+      PlacedConvex& placed = scratch->pieces[body.first_placed + k];
+      placed = Place(body.pieces[k], motion.R_WB, motion.p_WB);
+      placed.turn_W = dt * motion.w_WB;
+      placed.shift_W = dt * motion.v_WBcm + placed.turn_W.cross(placed.p_WP - motion.p_WBcm);
     }
     scratch->bounds[i] = BoundsOf(motion.R_WB, motion.p_WB, body.p_BBox, body.half);
     scratch->bounds[i].margin = dt * (motion.v_WBcm.norm() + motion.w_WB.norm() * kernels[i].reach);

@@ -8,7 +8,7 @@ namespace {
 
 // Overlap is pushed out by this share per step, no faster than the cap; overlap below the slop is
 // left alone, which spares steps at rest the correction pass.
-constexpr double kCorrectionShare = 0.2;
+constexpr double kCorrectionShare = 0.5;
 constexpr double kMaxCorrectionSpeed = 0.5;  // [m/s]
 constexpr double kCorrectionSlop = 1e-6;     // [m]
 // Slower impacts do not bounce [m/s].

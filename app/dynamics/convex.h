@@ -43,11 +43,14 @@ struct Convex {
 /// @throws InputError if the shape holds a piece without volume.
 std::vector<Convex> BuildConvexPieces(const Shape& shape);
 
-/// A piece at its pose in the world, within one step.
+/// A piece at its pose in the world, within one step, and how far the step takes it if nothing is
+/// in its way.
 struct PlacedConvex {
   const Convex* convex = nullptr;
   Matrix3 R_WP = Matrix3::Identity();
   Vector3 p_WP = Vector3::Zero();
+  Vector3 shift_W = Vector3::Zero();  ///< of its origin [m]
+  Vector3 turn_W = Vector3::Zero();   ///< [rad], small
 };
 
 }  // namespace pregrasp

@@ -31,7 +31,8 @@ enum class OverlapResult : std::uint8_t { kNone, kSliver, kTouching };
 /// corners of one over the other and crossings of their outlines, with the gap measured along
 /// nhat_W, exactly for polygons and discs; those within `margin` are reduced to four.
 /// @returns kSliver if the overlap is thinner than kMinOverlap somewhere.
-OverlapResult OverlapFeatures(const Feature& a, const Feature& b, const Vector3& nhat_W,
-                              double margin, Manifold* manifold);
+OverlapResult OverlapFeatures(const PlacedConvex& a, const PlacedConvex& b,
+                              const Feature& feature_a, const Feature& feature_b,
+                              const Vector3& nhat_W, double margin, Manifold* manifold);
 
 }  // namespace pregrasp

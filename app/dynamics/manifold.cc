@@ -20,15 +20,31 @@ double Area(const PlanarPoint& a, const PlanarPoint& b, const PlanarPoint& c) {
 
 }  // namespace
 
-int ChooseFour(const PlanarPoint* points, int count,
+Approach::Approach(const PlacedConvex& a, const PlacedConvex& b, const Vector3& p_WO,
+                   const Matrix3& R_WT) {
+  const Vector3 turn = b.turn_W - a.turn_W;
+  const Vector3 shift =
+      b.shift_W + b.turn_W.cross(p_WO - b.p_WP) - a.shift_W - a.turn_W.cross(p_WO - a.p_WP);
+  const Vector3 nhat = R_WT.col(2);
+  at_origin = nhat.dot(shift);
+  per_x = nhat.dot(turn.cross(R_WT.col(0)));
+  per_y = nhat.dot(turn.cross(R_WT.col(1)));
+}
+
+int ChooseFour(const PlanarPoint* points, int count, const Approach& approach,
                std::array<int, Manifold::kMaxPoints>* chosen) {
   if (count <= Manifold::kMaxPoints) {
     for (int i = 0; i < count; ++i) (*chosen)[i] = i;
     return count;
   }
   int first = 0;
+  double lowest = points[0].phi + approach.At(points[0].x, points[0].y);
   for (int i = 1; i < count; ++i) {
-    if (points[i].phi < points[first].phi - kDepthTie) first = i;
+    const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
+    if (gap < lowest - kDepthTie) {
+      lowest = gap;
+      first = i;
+    }
   }
   const PlanarPoint& p0 = points[first];
   int second = -1;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "app/core/math.h"
+#include "app/dynamics/convex.h"
 
 namespace pregrasp {
 
@@ -35,10 +36,21 @@ struct PlanarPoint {
   std::uint32_t feature = 0;
 };
 
-/// Chooses at most four of `count` points that stand for all: the deepest, the farthest from it,
-/// the one that makes the largest triangle, and the one farthest outside that triangle. Ties within
-/// a tolerance go to the lower index, so that the choice does not flicker.
+/// How the gap between two pieces changes in a step, over the places of the tangent plane.
+struct Approach {
+  double at_origin = 0.0, per_x = 0.0, per_y = 0.0;
+
+  /// @param p_WO, R_WT  origin and axes (x, y, normal from a to b) of the tangent plane.
+  Approach(const PlacedConvex& a, const PlacedConvex& b, const Vector3& p_WO, const Matrix3& R_WT);
+
+  double At(double x, double y) const { return at_origin + per_x * x + per_y * y; }
+};
+
+/// Chooses at most four of `count` points that stand for all: the deepest at the end of the step,
+/// the farthest from it, the one that makes the largest triangle, and the one farthest outside that
+/// triangle. Ties within a tolerance go to the lower index, so that the choice does not flicker.
 /// @returns how many; their indices are in `chosen`.
-int ChooseFour(const PlanarPoint* points, int count, std::array<int, Manifold::kMaxPoints>* chosen);
+int ChooseFour(const PlanarPoint* points, int count, const Approach& approach,
+               std::array<int, Manifold::kMaxPoints>* chosen);
 
 }  // namespace pregrasp

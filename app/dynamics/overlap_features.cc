@@ -79,7 +79,8 @@ class Overlap {
     Project(b, &b_);
   }
 
-  OverlapResult Find(double margin, Manifold* manifold) {
+  OverlapResult Find(const PlacedConvex& a, const PlacedConvex& b, double margin,
+                     Manifold* manifold) {
     if (a_.steep || b_.steep) return OverlapResult::kNone;
     if (a_.is_region() && b_.is_region()) {
       AddRegions();
@@ -92,7 +93,7 @@ class Overlap {
     }
     if (count_ == 0) return OverlapResult::kNone;
     if (IsSliver(a_) || IsSliver(b_)) return OverlapResult::kSliver;
-    return Report(margin, manifold);
+    return Report(Approach(a, b, origin_, R_WT_), margin, manifold);
   }
 
  private:
@@ -360,7 +361,7 @@ class Overlap {
     return false;
   }
 
-  OverlapResult Report(double margin, Manifold* manifold) {
+  OverlapResult Report(const Approach& approach, double margin, Manifold* manifold) {
     std::array<PlanarPoint, kMaxCandidates> points;
     std::array<int, kMaxCandidates> index;
     int near = 0;
@@ -374,7 +375,7 @@ class Overlap {
     if (near == 0) return OverlapResult::kNone;
     manifold->nhat_W = R_WT_.col(2);
     std::array<int, Manifold::kMaxPoints> chosen;
-    const int num_chosen = ChooseFour(points.data(), near, &chosen);
+    const int num_chosen = ChooseFour(points.data(), near, approach, &chosen);
     for (int n = 0; n < num_chosen; ++n) {
       const Candidate& c = candidates_[index[chosen[n]]];
       manifold->Add(origin_ + R_WT_ * Vector3(c.x, c.y, 0.5 * (c.height_a + c.height_b)),
@@ -392,10 +393,11 @@ class Overlap {
 
 }  // namespace
 
-OverlapResult OverlapFeatures(const Feature& a, const Feature& b, const Vector3& nhat_W,
-                              double margin, Manifold* manifold) {
+OverlapResult OverlapFeatures(const PlacedConvex& a, const PlacedConvex& b,
+                              const Feature& feature_a, const Feature& feature_b,
+                              const Vector3& nhat_W, double margin, Manifold* manifold) {
   manifold->Clear();
-  return Overlap(a, b, nhat_W).Find(margin, manifold);
+  return Overlap(feature_a, feature_b, nhat_W).Find(a, b, margin, manifold);
 }
 
 }  // namespace pregrasp

@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "app/core/thread_pool.h"
 #include "app/scene/finger.h"
 #include "app/scene/scene.h"
 
