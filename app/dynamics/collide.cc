@@ -8,27 +8,40 @@ using internal::CollideWithBoxFace;
 using internal::FaceOutcome;
 using internal::kFaceOfB;
 
+namespace {
+
+// Contact of `larger` and `smaller`, normal from the first to the second. The larger shape's faces
+// come first: it is the table, the shelf, the wall, and a plane that does not sway.
+bool CollideOrdered(const PlacedConvex& larger, const PlacedConvex& smaller, double margin,
+                    Manifold* manifold) {
+  const bool box_larger = larger.convex->kind == ConvexKind::kBox;
+  const bool box_smaller = smaller.convex->kind == ConvexKind::kBox;
+  if (box_larger) {
+    const FaceOutcome outcome = CollideWithBoxFace(larger, smaller, margin, manifold);
+    if (outcome != FaceOutcome::kNotApplicable) return outcome == FaceOutcome::kTouching;
+  }
+  if (box_smaller) {
+    const FaceOutcome outcome = CollideWithBoxFace(smaller, larger, margin, manifold);
+    if (outcome == FaceOutcome::kTouching) {
+      manifold->nhat_W = -manifold->nhat_W;
+      for (int i = 0; i < manifold->size; ++i) manifold->points[i].feature |= kFaceOfB;
+    }
+    if (outcome != FaceOutcome::kNotApplicable) return outcome == FaceOutcome::kTouching;
+  }
+  return box_larger && box_smaller ? CollideBoxes(larger, smaller, margin, manifold)
+                                   : CollideConvex(larger, smaller, margin, manifold);
+}
+
+}  // namespace
+
 bool Collide(const PlacedConvex& a, const PlacedConvex& b, double margin, Manifold* manifold) {
   manifold->Clear();
-  // The box with the larger face first: it is the table, the shelf, the wall.
-  const bool a_larger = a.convex->half.sum() >= b.convex->half.sum();
-  for (const bool a_first : {a_larger, !a_larger}) {
-    const PlacedConvex& face = a_first ? a : b;
-    if (face.convex->kind != ConvexKind::kBox) continue;
-    const FaceOutcome outcome = CollideWithBoxFace(face, a_first ? b : a, margin, manifold);
-    if (outcome == FaceOutcome::kApart) return false;
-    if (outcome == FaceOutcome::kTouching) {
-      if (!a_first) {
-        manifold->nhat_W = -manifold->nhat_W;
-        for (int i = 0; i < manifold->size; ++i) manifold->points[i].feature |= kFaceOfB;
-      }
-      return true;
-    }
+  if (a.convex->half.sum() >= b.convex->half.sum()) {
+    return CollideOrdered(a, b, margin, manifold);
   }
-  if (a.convex->kind == ConvexKind::kBox && b.convex->kind == ConvexKind::kBox) {
-    return CollideBoxes(a, b, margin, manifold);
-  }
-  return CollideConvex(a, b, margin, manifold);
+  const bool found = CollideOrdered(b, a, margin, manifold);
+  manifold->nhat_W = -manifold->nhat_W;
+  return found;
 }
 
 }  // namespace pregrasp

@@ -110,6 +110,11 @@ struct World::Impl {
       const MassProperties mass = model->GetMassProperties(static_cast<int>(kernels.size()));
       kernels.push_back(MakeBodyKernel(b, mass.mass, mass.p_BoBcm, mass.I_BBcm,
                                        collision.CalcReach(b, mass.p_BoBcm)));
+      if (!(kernels.back().I_P.minCoeff() > 0.0)) {
+        throw InputError(scene.bodies[b].where, scene.bodies[b].name + ".inertia",
+                         "moments above 0 about every axis",
+                         FormatDouble(kernels.back().I_P.minCoeff()));
+      }
     }
     law = FingertipLaw(scene.fingertips, kernels.at(0).mass);
     initial.bodies = model->GetDefaultState();

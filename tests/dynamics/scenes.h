@@ -1,16 +1,28 @@
 #pragma once
 
 #include <cmath>
+#include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/core/math.h"
+#include "app/core/rng.h"
 #include "app/dynamics/world.h"
+#include "app/geometry/hull.h"
+#include "app/geometry/mass_properties.h"
 #include "app/scene/scene.h"
+#include "tests/geometry/test_shapes.h"
 
 namespace pregrasp {
 
 // Scenes that the tests of app/dynamics share, built in code: SI units.
+
+inline constexpr double kGravity = 9.81;
+
+inline RigidTransform At(double x, double y, double z, const Vector3& rpy_deg = Vector3::Zero()) {
+  return MakeTransform(RotationFromRpy(rpy_deg * (kPi / 180.0)), Vector3(x, y, z));
+}
 
 inline Body MakeFixed(const std::string& name, const Shape& shape, const RigidTransform& X_WB,
                       double friction) {
@@ -22,27 +34,17 @@ inline Body MakeFixed(const std::string& name, const Shape& shape, const RigidTr
   return body;
 }
 
-/// The inertia of a solid box of edge lengths `size`.
-inline Matrix3 BoxInertia(double mass, const Vector3& size) {
-  const Vector3 s2 = size.cwiseProduct(size);
-  return (mass / 12.0 * Vector3(s2.y() + s2.z(), s2.x() + s2.z(), s2.x() + s2.y())).asDiagonal();
-}
-
+/// A body of uniform density.
 inline Body MakeMovable(const std::string& name, const Shape& shape, const RigidTransform& X_WB,
-                        double mass, double friction, const Matrix3& I_BBcm,
-                        const Vector3& p_BoBcm = Vector3::Zero()) {
+                        double mass, double friction) {
   Body body = MakeFixed(name, shape, X_WB, friction);
-  body.mass_properties = MassProperties{mass, p_BoBcm, I_BBcm};
+  body.mass_properties = CalcMassProperties(shape, mass);
   return body;
 }
 
 inline Body MakeBox(const std::string& name, const Vector3& size, const RigidTransform& X_WB,
                     double mass, double friction) {
-  return MakeMovable(name, Box{size}, X_WB, mass, friction, BoxInertia(mass, size));
-}
-
-inline RigidTransform At(double x, double y, double z, const Vector3& rpy_deg = Vector3::Zero()) {
-  return MakeTransform(RotationFromRpy(rpy_deg * (kPi / 180.0)), Vector3(x, y, z));
+  return MakeMovable(name, Box{size}, X_WB, mass, friction);
 }
 
 /// A table whose top is z = 0, 2 m wide.
@@ -61,12 +63,71 @@ inline Scene MakeScene(const Body& object, std::vector<Body> environment = {Make
 
 /// Gravity as on an incline of `angle` [rad] whose surface is the table: down the slope is +x.
 inline Vector3 InclineGravity(double angle) {
-  return 9.81 * Vector3(std::sin(angle), 0.0, -std::cos(angle));
+  return kGravity * Vector3(std::sin(angle), 0.0, -std::cos(angle));
 }
 
 inline void Simulate(const World& world, double seconds, WorldState* state) {
   const int steps = static_cast<int>(std::lround(seconds / world.config().dt));
   for (int i = 0; i < steps; ++i) world.Step(*state);
+}
+
+/// The angle between a body's z axis and W's [rad].
+inline double CalcTilt(const BodyState& body) {
+  return RotationAngle(
+      Quaternion::FromTwoVectors(body.q_WB * Vector3::UnitZ(), Vector3::UnitZ()).toRotationMatrix(),
+      Matrix3::Identity());
+}
+
+/// Every number of a state, bit by bit.
+inline std::string BytesOf(const WorldState& state) {
+  std::string bytes;
+  const auto add = [&bytes](const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  };
+  add(&state.step, sizeof(state.step));
+  add(&state.t, sizeof(state.t));
+  for (const BodyState& body : state.bodies) {
+    add(body.q_WB.coeffs().data(), 4 * sizeof(double));
+    for (const Vector3* v : {&body.p_WB, &body.w_WB, &body.v_WB}) add(v->data(), sizeof(Vector3));
+  }
+  for (const FingertipState& finger : state.fingers) {
+    for (const Vector3* v :
+         {&finger.p_OC, &finger.nhat_O, &finger.p_WF, &finger.p_WTarget, &finger.f_W}) {
+      add(v->data(), sizeof(Vector3));
+    }
+    bytes += {static_cast<char>(finger.on), static_cast<char>(finger.touching),
+              static_cast<char>(finger.slipping)};
+    add(&finger.slip, sizeof(finger.slip));
+  }
+  for (const WorldState::CachedImpulse& impulse : state.cache) {
+    add(&impulse.key, sizeof(impulse.key));
+    add(impulse.impulse_W.data(), sizeof(Vector3));
+  }
+  return bytes;
+}
+
+/// A random convex polyhedron with `count` corners on an ellipsoid.
+inline Shape MakeRandomHull(Rng& rng, int count, const Vector3& half) {
+  MatrixX3 P(count, 3);
+  for (int i = 0; i < count; ++i) P.row(i) = rng.Direction().cwiseProduct(half).transpose();
+  return testing::MakeMesh(CalcConvexHull(P));
+}
+
+/// A bent bar with a knob, whose hull is far from it.
+inline Union MakeHook() {
+  Union hook;
+  hook.parts.push_back({Box{Vector3(0.1, 0.02, 0.02)}, RigidTransform::Identity()});
+  hook.parts.push_back({Box{Vector3(0.02, 0.02, 0.1)}, At(0.04, 0.0, 0.04)});
+  hook.parts.push_back({Sphere{0.02}, At(-0.04, 0.0, 0.0)});
+  return hook;
+}
+
+/// A dinner plate as its foot and its rim.
+inline Union MakePlateUnion() {
+  Union plate;
+  plate.parts.push_back({Cylinder{0.075, 0.018}, At(0.0, 0.0, 0.009)});
+  plate.parts.push_back({Cylinder{0.13, 0.007}, At(0.0, 0.0, 0.0215)});
+  return plate;
 }
 
 }  // namespace pregrasp
