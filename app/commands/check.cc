@@ -40,11 +40,11 @@ int Check(const CheckOptions& options) {
   if (errors > 0) return 2;
   if (!options.no_grasps) {
     ThreadPool pool;
-    const StartReport report = FindStartReport(scene, options.seed, pool);
-    const bool graspable = report.certificate.verdict == StartVerdict::kGraspable;
+    const StartCertificate start = FindSceneVerdict(scene, options.seed, pool);
+    const bool graspable = start.verdict == StartVerdict::kGraspable;
     warnings += graspable;
     fmt::print("{}: {}{}\n", scene.object().where, graspable ? "warning: " : "",
-               DescribeStart(report));
+               DescribeStart(start));
   }
   fmt::print("{}: {}, {} bodies, {}\n", options.scene,
              warnings == 0 ? "clean" : fmt::format("usable, warnings: {}", warnings),

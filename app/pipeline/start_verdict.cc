@@ -8,22 +8,14 @@
 
 namespace pregrasp {
 
-StartReport FindStartReport(const Scene& scene, std::uint64_t seed, ThreadPool& pool) {
+StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed, ThreadPool& pool) {
   StartCertificateConfig config;
   config.seed = seed;
-  const SurfacePointsConfig surface;
-  const HandModel& hand = ShadowHand();
-  const std::filesystem::path folder = DefaultVerdictFolder();
-  const std::string key = StartVerdictKey(scene, hand, surface, config);
-  if (auto stored = LoadStartVerdict(folder, key)) return {std::move(*stored), true};
-  const GraspWorld world(scene, hand, surface);
-  StartReport report{CertifyStart(world, config, pool), false};
-  StoreStartVerdict(folder, key, report.certificate);
-  return report;
+  const GraspWorld world(scene, ShadowHand());
+  return FindStartVerdict(world, config, {}, {DefaultVerdictFolder()}, pool);
 }
 
-std::string DescribeStart(const StartReport& report) {
-  const StartCertificate& certificate = report.certificate;
+std::string DescribeStart(const StartCertificate& certificate) {
   switch (certificate.verdict) {
     case StartVerdict::kCertified:
       return fmt::format(

@@ -8,18 +8,12 @@
 
 namespace pregrasp {
 
-/// Whether the object can be grasped where it stands, and where the answer comes from.
-struct StartReport {
-  StartCertificate certificate;
-  bool stored = false;  ///< found among earlier verdicts, not computed now
-};
-
-/// Looks the verdict up by the scene's hash, else finds it (design, section 4: by proof, else by
-/// search) and stores it for the next time.
+/// Whether the object can be grasped where it stands (design, section 4: by proof, else by search):
+/// the verdict stored under the scene's hash, else found now and stored for the next time.
 /// @param scene  loaded.
-StartReport FindStartReport(const Scene& scene, std::uint64_t seed, ThreadPool& pool);
+StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed, ThreadPool& pool);
 
 /// One sentence with the numbers that decided.
-std::string DescribeStart(const StartReport& report);
+std::string DescribeStart(const StartCertificate& certificate);
 
 }  // namespace pregrasp
