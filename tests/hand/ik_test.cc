@@ -66,15 +66,11 @@ void ExpectNearlyAllSolved(int fingers, const std::array<int, kNumIkObjects>& co
   EXPECT_GE(all.solved, 0.99 * all.tried);
 }
 
-TEST(IkTest, SolvesTwoFingerProblemsThatHaveASolution) {
-  ExpectNearlyAllSolved(2, {20, 20, 10, 10});
-}
+TEST(IkTest, SolvesTwoFingerProblemsThatHaveASolution) { ExpectNearlyAllSolved(2, {12, 12, 6, 6}); }
 TEST(IkTest, SolvesThreeFingerProblemsThatHaveASolution) {
-  ExpectNearlyAllSolved(3, {20, 20, 10, 10});
+  ExpectNearlyAllSolved(3, {12, 12, 6, 6});
 }
-TEST(IkTest, SolvesFiveFingerProblemsThatHaveASolution) {
-  ExpectNearlyAllSolved(5, {10, 10, 2, 2});
-}
+TEST(IkTest, SolvesFiveFingerProblemsThatHaveASolution) { ExpectNearlyAllSolved(5, {8, 8, 2, 2}); }
 TEST(IkLongTest, SolvesNinetyNineOfAHundredProblemsThatHaveASolution) {
   for (const int fingers : {2, 3, 5}) ExpectNearlyAllSolved(fingers, {200, 200, 100, 100});
 }
