@@ -1,0 +1,178 @@
+#include "app/pipeline/planner.h"
+
+#include <cmath>
+
+#include "app/core/check.h"
+#include "app/core/error.h"
+
+namespace pregrasp {
+namespace {
+
+constexpr double kReleaseSeconds = 1.0;
+constexpr double kReleaseShift = 0.01;  // [m]
+constexpr double kReleaseTurnDeg = 5.0;
+
+StepConfig HalfStep(StepConfig config) {
+  config.dt *= 0.5;
+  return config;
+}
+
+std::vector<GraspContact> PressingContacts(const WorldState& state) {
+  std::vector<GraspContact> pressing;
+  for (int f = 0; f < kNumPlanningFingers; ++f) {
+    const FingertipState& tip = state.fingers[f];
+    if (tip.on && tip.touching) {
+      pressing.push_back({static_cast<Finger>(f), tip.p_OC, tip.nhat_O});
+    }
+  }
+  return pressing;
+}
+
+PlanningContacts ToPlanningContacts(const std::vector<GraspContact>& contacts,
+                                    const std::vector<RigidTransform>& X_WB,
+                                    const EnvironmentDistance& environment) {
+  Placement placement;
+  for (const GraspContact& contact : contacts) {
+    placement.fingers.at(static_cast<int>(contact.finger)) = {true, contact.p_OC, contact.nhat_O};
+  }
+  return MakePlanningContacts(placement, &X_WB, environment);
+}
+
+}  // namespace
+
+void PlannerConfig::Validate() const {
+  if (cloud_points < 64 || cloud_points > 4096) {
+    throw InputError("", "cloud_points", "a whole number from 64 to 4096",
+                     std::to_string(cloud_points));
+  }
+  if (stages < 1 || stages > 8) {
+    throw InputError("", "stages", "a whole number from 1 to 8", std::to_string(stages));
+  }
+  if (grasp_samples < 1 || grasp_samples > 1000) {
+    throw InputError("", "grasp_samples", "a whole number from 1 to 1000",
+                     std::to_string(grasp_samples));
+  }
+  mesh.Validate();
+  graph.Validate();
+  mppi.Validate();
+  completion.Validate();
+  lift.Validate();
+  motion.Validate();
+}
+
+Planner::Planner(std::shared_ptr<const World> world, WorldState start, const PlannerConfig& config,
+                 std::uint64_t seed, ThreadPool& pool, const std::filesystem::path& weights)
+    : world_(std::move(world)),
+      start_(std::move(start)),
+      config_(config),
+      seed_(seed),
+      pool_(pool) {
+  config.Validate();
+  half_world_ = std::make_unique<World>(scene(), HalfStep(world_->config()));
+  environment_ = std::make_unique<EnvironmentDistance>(scene());
+  shape_ = std::make_unique<SignedDistance>(scene().object().shape);
+  score_ = std::make_unique<ScoreFunction>(ScoreFunction::Load(weights / "score.safetensors"));
+  generator_ =
+      std::make_unique<GraspGenerator>(GraspGenerator::Load(weights / "generator.safetensors"));
+  PointCloud cloud = SamplePointCloud(scene().object().shape, config.cloud_points,
+                                      Rng(seed, RngStream::kPointCloud));
+  generator_structure_ = std::make_unique<CloudStructure>(
+      generator_->BuildStructure(cloud.P, scene().object().X_WB.linear()));
+  scorer_ =
+      std::make_unique<LearnedScorer>(*score_, scene(), std::move(cloud), *environment_, pool_);
+  grasp_world_ = std::make_unique<GraspWorld>(scene(), ShadowHand());
+}
+
+Planner::~Planner() = default;
+
+ContactGraph Planner::BuildGraph(const ContactMeshConfig& mesh,
+                                 const ContactGraphConfig& graph) const {
+  return {BuildContactMesh(scene().object().shape, mesh), graph};
+}
+
+void Planner::ScoreGraph(ContactGraph& graph) const {
+  const auto context = scorer_->InContext();
+  const auto free = scorer_->Free();
+  graph.Score(*shape_, *context, *free, seed_);
+}
+
+Mppi Planner::MakeMppi(const ContactGraph& graph, const ContactPath& path,
+                       const MppiConfig& config) const {
+  MppiProblem problem;
+  problem.world = world_.get();
+  problem.environment = environment_.get();
+  problem.shape = shape_.get();
+  problem.graph = &graph;
+  problem.scorer = scorer_.get();
+  problem.start = start_;
+  problem.path = path;
+  // Each path draws its own numbers: the seed is the run's in the low half, the rank in the high.
+  problem.seed = seed_ + (static_cast<std::uint64_t>(path.rank) << 32);
+  return {problem, config};
+}
+
+Certificate Planner::Certify(const Mppi& mppi, const MppiState& state) const {
+  PREGRASP_CHECK(!state.best_action.empty());
+  const PlanOutcome outcome = mppi.Simulate(state.best_action);
+  return CertifyPlan(*world_, *half_world_, *environment_, mppi.problem().start, outcome.plan,
+                     mppi.config().timing, config_.certify);
+}
+
+ReleaseResult Planner::Release(const Certificate& certificate) const {
+  ReleaseResult result;
+  WorldState state = certificate.full.end;
+  result.pressing = PressingContacts(state);
+  for (auto row = certificate.trace.rbegin();
+       row != certificate.trace.rend() && result.conditions.empty(); ++row) {
+    result.conditions = PressingContacts(row->state);
+  }
+  for (int f = 0; f < kNumFingers; ++f) world_->LiftFinger(state, static_cast<Finger>(f));
+  const RigidTransform X_WO = state.bodies.front().X_WB();
+  const int steps = static_cast<int>(std::lround(kReleaseSeconds / world_->config().dt));
+  for (int i = 0; i < steps; ++i) world_->Step(state);
+  const RigidTransform X_WO_end = state.bodies.front().X_WB();
+  result.shift = (X_WO_end.translation() - X_WO.translation()).norm();
+  result.turn_deg = RadToDeg(RotationAngle(X_WO.linear(), X_WO_end.linear()));
+  result.stays = result.shift < kReleaseShift && result.turn_deg < kReleaseTurnDeg;
+  return result;
+}
+
+CompletedGrasp Planner::CompleteGrasp(const Certificate& certificate, const ReleaseResult& release,
+                                      int path_rank, int sample) const {
+  const std::vector<RigidTransform> X_WB = world_->GetPoses(certificate.full.end);
+  const ObjectState seen = MakeObjectState(scorer_->cloud(), X_WB, *environment_, scene().gravity);
+  const EncodedState encoded = generator_->Encode(*generator_structure_, seen);
+  const PlanningContacts conditions = ToPlanningContacts(release.conditions, X_WB, *environment_);
+  const Rng latent(seed_, RngStream::kGrasp, static_cast<std::uint32_t>(path_rank),
+                   static_cast<std::uint32_t>(2 * sample));
+  const GraspPoints points =
+      generator_->Sample(*generator_structure_, encoded, conditions, 1, latent).front();
+  const Rng refinement(seed_, RngStream::kGrasp, static_cast<std::uint32_t>(path_rank),
+                       static_cast<std::uint32_t>(2 * sample + 1));
+  const std::vector<GraspContact> fixed =
+      release.stays ? std::vector<GraspContact>{} : release.pressing;
+  return pregrasp::CompleteGrasp(*grasp_world_, config_.completion, points, fixed, X_WB,
+                                 refinement);
+}
+
+LiftResult Planner::Lift(const Certificate& certificate, const GraspResult& grasp) const {
+  const WorldState& state = certificate.full.end;
+  const Vector3 direction_W =
+      FindLiftDirection(*world_, state, scorer_->cloud(), *environment_, config_.lift.height);
+  return SimulateLift(*world_, state, *grasp_world_, grasp, direction_W, config_.lift);
+}
+
+HandMotion Planner::MakeMotion(const Certificate& certificate, const GraspResult& grasp,
+                               const Vector3& direction_W, const MotionConfig& config) const {
+  PREGRASP_CHECK(grasp.kinematics.has_value());
+  MotionGrasp end;
+  for (const GraspContact& contact : grasp.contacts) {
+    end.contacts[static_cast<int>(contact.finger)] = {true, contact.p_OC, contact.nhat_O};
+  }
+  end.configuration = grasp.kinematics->ik.configuration();
+  MotionTask task =
+      BuildMotionTask(*world_, certificate.trace, end, direction_W, config_.motion_timing);
+  return {grasp_world_->ik(), std::move(task), end.configuration, config, seed_};
+}
+
+}  // namespace pregrasp

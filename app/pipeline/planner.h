@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "app/geometry/contact_mesh.h"
+#include "app/graph/learned_scorer.h"
+#include "app/grasp/grasp_completion.h"
+#include "app/grasp/lift.h"
+#include "app/motion/hand_motion.h"
+#include "app/trajectory/certify.h"
+#include "app/trajectory/mppi.h"
+
+namespace pregrasp {
+
+/// The settings of all stages: the same defaults for every scene.
+struct PlannerConfig {
+  int cloud_points = 512;  ///< of the object cloud O, 64 to 4096
+  ContactMeshConfig mesh;
+  ContactGraphConfig graph;
+  int stages = 2;  ///< N, nodes in a path
+  MppiConfig mppi;
+  CertifyConfig certify;
+  CompletionConfig completion;
+  int grasp_samples = 20;  ///< latent samples on a certified trajectory
+  LiftConfig lift;
+  MotionTiming motion_timing;
+  MotionConfig motion;
+
+  void Validate() const;
+};
+
+/// What is left of a certified trajectory when the fingers let go, and so which of them must stay.
+struct ReleaseResult {
+  bool stays = false;  ///< under 1 cm and 5 degrees within 1 s (design, section 4)
+  double shift = 0.0, turn_deg = 0.0;
+  /// The contacts that press at the end of the trajectory. If the object does not stay without
+  /// them, every grasp keeps them where they are.
+  std::vector<GraspContact> pressing;
+  /// What the grasp generator is asked to complete: `pressing`, or where fingers pressed last.
+  std::vector<GraspContact> conditions;
+};
+
+/// The stages of one scene bound together: builds what they share once, and hands each stage its
+/// inputs. No mathematics of its own. Immutable after construction.
+class Planner {
+ public:
+  /// @param start    of every plan, fingers off.
+  /// @param pool     for what runs in parallel; outlives this.
+  /// @param weights  the folder with score.safetensors and generator.safetensors.
+  /// @throws InputError for a bad configuration, or weights that are missing or damaged.
+  Planner(std::shared_ptr<const World> world, WorldState start, const PlannerConfig& config,
+          std::uint64_t seed, ThreadPool& pool, const std::filesystem::path& weights);
+  ~Planner();
+
+  const Scene& scene() const { return world_->scene(); }
+  const PlannerConfig& config() const { return config_; }
+  std::uint64_t seed() const { return seed_; }
+  ThreadPool& pool() const { return pool_; }
+  const World& world() const { return *world_; }
+  const WorldState& start() const { return start_; }
+  const EnvironmentDistance& environment() const { return *environment_; }
+  const SignedDistance& shape() const { return *shape_; }
+  const LearnedScorer& scorer() const { return *scorer_; }
+  const GraspWorld& grasp_world() const { return *grasp_world_; }
+
+  /// The contact mesh as an unscored graph.
+  ContactGraph BuildGraph(const ContactMeshConfig& mesh, const ContactGraphConfig& graph) const;
+  void ScoreGraph(ContactGraph& graph) const;
+
+  /// The optimisation of one path; `graph` outlives it.
+  Mppi MakeMppi(const ContactGraph& graph, const ContactPath& path, const MppiConfig& config) const;
+
+  /// Re-simulates the best plan through Simbody, and again at half the step.
+  Certificate Certify(const Mppi& mppi, const MppiState& state) const;
+
+  ReleaseResult Release(const Certificate& certificate) const;
+
+  /// The generated grasp number `sample` (from 0) on a certified trajectory, tested. Safe to call
+  /// from several threads.
+  /// @param path_rank  keys the latent samples.
+  CompletedGrasp CompleteGrasp(const Certificate& certificate, const ReleaseResult& release,
+                               int path_rank, int sample) const;
+
+  LiftResult Lift(const Certificate& certificate, const GraspResult& grasp) const;
+
+  /// @param direction_W  of the lift.
+  HandMotion MakeMotion(const Certificate& certificate, const GraspResult& grasp,
+                        const Vector3& direction_W, const MotionConfig& config) const;
+
+ private:
+  std::shared_ptr<const World> world_;
+  WorldState start_;
+  PlannerConfig config_;
+  std::uint64_t seed_;
+  ThreadPool& pool_;
+  std::unique_ptr<World> half_world_;
+  std::unique_ptr<EnvironmentDistance> environment_;
+  std::unique_ptr<SignedDistance> shape_;
+  std::unique_ptr<ScoreFunction> score_;
+  std::unique_ptr<GraspGenerator> generator_;
+  std::unique_ptr<LearnedScorer> scorer_;
+  std::unique_ptr<CloudStructure> generator_structure_;
+  std::unique_ptr<GraspWorld> grasp_world_;
+};
+
+}  // namespace pregrasp
