@@ -84,6 +84,24 @@ Vector3 ChooseViewDirection(const TriangleMesh& mesh_W, const EnvironmentDistanc
   return best;
 }
 
+bool IsInSight(const RenderCamera& camera, const MatrixX3& P_W, double aspect, double border) {
+  const Vector3 forward_W = (camera.p_WTarget - camera.p_WCam).normalized();
+  const Vector3 side_W = forward_W.cross(Vector3::UnitZ());
+  if (side_W.norm() < 1e-6) return false;  // straight down: framed anew
+  const Vector3 right_W = side_W.normalized();
+  const Vector3 up_W = right_W.cross(forward_W);
+  const double half_height = (1.0 - border) * std::tan(0.5 * DegToRad(camera.fov_deg));
+  for (Eigen::Index i = 0; i < P_W.rows(); ++i) {
+    const Vector3 d_W = P_W.row(i).transpose() - camera.p_WCam;
+    const double depth = d_W.dot(forward_W);
+    if (depth <= 0.0 || std::abs(d_W.dot(up_W)) > half_height * depth ||
+        std::abs(d_W.dot(right_W)) > half_height * aspect * depth) {
+      return false;
+    }
+  }
+  return true;
+}
+
 MatrixX3 FocusAround(const MatrixX3& P_W, double share, double headroom) {
   Vector3 low = P_W.colwise().minCoeff(), high = P_W.colwise().maxCoeff();
   const double longest = (high - low).maxCoeff();

@@ -13,6 +13,10 @@ namespace pregrasp {
 /// @param mesh_W  the object's surface in the world.
 Vector3 ChooseViewDirection(const TriangleMesh& mesh_W, const EnvironmentDistance& environment);
 
+/// Whether all points (#points x 3) lie within the picture, at least `border` of its half width and
+/// half height from the edge.
+bool IsInSight(const RenderCamera& camera, const MatrixX3& P_W, double aspect, double border);
+
 /// Corners of the box around the object's points, widened on all sides by `share` of its longest
 /// edge, so that the surroundings show and small motions stay in the picture, and upwards by
 /// `headroom` [m] more, for fingers and for the card of text (8 x 3).

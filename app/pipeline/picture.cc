@@ -37,7 +37,7 @@ struct PictureMaker::Impl {
   std::shared_ptr<const World> world;
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  // one a body
   Vector3 view_W;          // towards the viewer, in automatic pictures
-  MatrixX3 start_focus_W;  // what they show at least: one camera for a whole strip
+  MatrixX3 start_focus_W;  // what they show at least: one camera for a strip, while that does
   double metres_per_newton = 0.0;
 
   RenderCamera ChooseCamera(const PictureConfig& config, const WorldState& state) const;
@@ -72,9 +72,14 @@ RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config,
                                               const WorldState& state) const {
   const auto& fixed = config.camera ? config.camera : world->scene().camera;
   if (fixed) return {fixed->p_WCam, fixed->p_WTarget, fixed->fov_deg};
+  const double aspect = static_cast<double>(config.width) / config.height;
+  const MatrixX3 object_W = Placed(meshes[0]->V, state.bodies[0].X_WB());
+  const RenderCamera at_start = FrameCamera(start_focus_W, view_W, aspect);
+  constexpr double kBorder = 0.08;
+  if (IsInSight(at_start, object_W, aspect, kBorder)) return at_start;
   MatrixX3 focus_W = start_focus_W;
-  Append(focus_W, Placed(meshes[0]->V, state.bodies[0].X_WB()));
-  return FrameCamera(focus_W, view_W, static_cast<double>(config.width) / config.height);
+  Append(focus_W, object_W);
+  return FrameCamera(focus_W, view_W, aspect);
 }
 
 void PictureMaker::Impl::AddBodies(RenderScene& scene, const WorldState& state,

@@ -22,16 +22,6 @@ Simulation MakePulled(const std::shared_ptr<const World>& world) {
   return sim;
 }
 
-// Whether a world point lies within the picture.
-bool InSight(const RenderCamera& camera, const Vector3& p_W, double aspect) {
-  const Vector3 forward = (camera.p_WTarget - camera.p_WCam).normalized();
-  const Vector3 right = forward.cross(Vector3::UnitZ()).normalized();
-  const Vector3 up = right.cross(forward);
-  const Vector3 d = p_W - camera.p_WCam;
-  const double half = std::tan(0.5 * DegToRad(camera.fov_deg)) * d.dot(forward);
-  return d.dot(forward) > 0 && std::abs(d.dot(up)) < half && std::abs(d.dot(right)) < half * aspect;
-}
-
 TEST(PictureMakerTest, ShowsEveryBodyTheFingerItsForceAndWhereTheObjectWas) {
   const auto world = std::make_shared<const World>(MakeRulerScene());
   const Simulation sim = MakePulled(world);
@@ -76,10 +66,33 @@ TEST(PictureMakerTest, TheAutomaticCameraHasTheObjectInSightWhereverItIs) {
     WorldState state = world->InitialState();
     state.bodies[0].p_WB.x() = x;
     const RenderScene scene = maker.Compose(state, {}, world->InitialState(), {}, {});
-    for (const double end : {-0.15, 0.15}) {
-      EXPECT_TRUE(InSight(scene.camera, {x + end, 0, 0}, 1280.0 / 720.0)) << x;
-    }
+    MatrixX3 ends(2, 3);
+    ends << x - 0.15, 0, 0, x + 0.15, 0, 0;
+    EXPECT_TRUE(IsInSight(scene.camera, ends, 1280.0 / 720.0, 0.0)) << x;
   }
+}
+
+TEST(PictureMakerTest, AStripOfSmallMotionsHasOneCamera) {
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  const PictureMaker maker(world);
+  WorldState state = world->InitialState();
+  const RenderCamera first = maker.Compose(state, {}, state, {}, {}).camera;
+  state.bodies[0].p_WB.x() += 0.03;
+  EXPECT_EQ(maker.Compose(state, {}, state, {}, {}).camera.p_WCam, first.p_WCam);
+}
+
+TEST(IsInSightTest, KnowsThePyramidOfSight) {
+  const RenderCamera camera{{0, -1, 0}, {0, 0, 0}, 90.0};
+  const auto sees = [&](double x, double y, double z) {
+    MatrixX3 p(1, 3);
+    p << x, y, z;
+    return IsInSight(camera, p, 2.0, 0.0);
+  };
+  EXPECT_TRUE(sees(0, 0, 0.99));
+  EXPECT_FALSE(sees(0, 0, 1.01));
+  EXPECT_TRUE(sees(1.99, 0, 0));
+  EXPECT_FALSE(sees(2.01, 0, 0));
+  EXPECT_FALSE(sees(0, -2, 0));  // behind
 }
 
 TEST(ChooseViewDirectionTest, LooksWhereNothingIsInTheWay) {
