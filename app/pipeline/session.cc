@@ -253,11 +253,17 @@ void Session::Finish(JournalWriter& writer, const std::optional<std::string>& st
   for (const WorldState& state : rollout) {
     max_speed = std::max(max_speed, state.bodies[0].v_WB.norm());
   }
-  nlohmann::json summary = {{"object_motion",
-                             {{"translation_m", motion.moved},
-                              {"rotation_deg", RadToDeg(motion.rotated)},
-                              {"max_speed", max_speed}}},
-                            {"peak_rss_mb", PeakMegabytes()}};
+  const double max_penetration = last_ ? last_->CalcMaxPenetration() : 0.0;
+  nlohmann::json summary = {
+      {"object_motion",
+       {{"translation_m", motion.moved},
+        {"rotation_deg", RadToDeg(motion.rotated)},
+        {"max_speed", max_speed}}},
+      {"physics", {{"max_penetration_mm", 1e3 * max_penetration}}},
+      {"seconds",
+       {{"total",
+         std::chrono::duration<double>(std::chrono::steady_clock::now() - opened_).count()}}},
+      {"peak_rss_mb", PeakMegabytes()}};
   if (status) summary["status"] = *status;
   const StepConfig& step = world_->config();
   const nlohmann::json configuration = {{"dynamics",

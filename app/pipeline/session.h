@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -108,6 +109,7 @@ class Session {
   std::vector<JournalStep> journal_;
   std::shared_ptr<const Simulation> last_;  // that acted last
   int num_actions_ = 0;
+  std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
   std::unique_ptr<JournalWriter> recorder_;
 };
 

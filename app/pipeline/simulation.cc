@@ -15,6 +15,14 @@ Simulation::Simulation(std::shared_ptr<const World> world, WorldState start, std
   past_.push_back(std::make_shared<const Moment>(Moment{std::move(start), {}, action_id_}));
 }
 
+double Simulation::CalcMaxPenetration() const {
+  double deepest = 0.0;
+  for (const auto& moment : past_) {
+    for (const ContactPoint& contact : moment->contacts) deepest = std::max(deepest, -contact.phi);
+  }
+  return deepest;
+}
+
 void Simulation::ReplaceState(WorldState state) {
   past_.back() =
       std::make_shared<const Moment>(Moment{std::move(state), past_.back()->contacts, action_id_});

@@ -25,6 +25,9 @@ class Simulation {
   int num_states() const { return static_cast<int>(past_.size()); }
   const WorldState& state_at(int index) const { return past_[index]->state; }
 
+  /// The deepest overlap of two bodies before any of the past steps [m].
+  double CalcMaxPenetration() const;
+
   /// The id of the action that led here, or of where it began.
   const std::string& step_id() const { return past_.back()->step_id; }
   /// What follows belongs to the action of this id.

@@ -102,6 +102,23 @@ TEST_F(SessionTest, PicturesBelongToTheStepTheyWereAskedForAndChangeNothingElse)
   EXPECT_FALSE(fs::exists(folder_ / "none/frames"));
 }
 
+TEST_F(SessionTest, TheSummaryHoldsTheDeepestOverlapOfAllPhysicsSteps) {
+  Session session(MakeRulerScene(), {});
+  const auto sim = session.Simulate();
+  Pull(session, sim);
+  double deepest = 0.0;
+  Simulation again = *sim;
+  for (; again.num_states() > 1; again.Back(1)) {
+    for (const ContactPoint& contact : again.contacts()) deepest = std::max(deepest, -contact.phi);
+  }
+  session.Save(folder_ / "run");
+  const auto summary = LoadRun(folder_ / "run").summary;
+  EXPECT_GT(deepest, 0.0);
+  EXPECT_LT(deepest, 1e-4);
+  EXPECT_DOUBLE_EQ(summary["physics"]["max_penetration_mm"], 1e3 * deepest);
+  EXPECT_GT(summary["seconds"]["total"], 0.0);
+}
+
 TEST_F(SessionTest, AnInterruptedActionIsAStepAndTheRunIsValid) {
   Session session(MakeRulerScene(), {});
   session.Record(folder_ / "run", PictureMode::kNone);
