@@ -38,12 +38,16 @@ void FileAccess::AllowReadsBelow(const fs::path& folder) {
   readable_.push_back(folder.empty() ? fs::path(".") : folder);
 }
 
+void FileAccess::AllowProgramFiles(const fs::path& data_folder) { data_folder_ = data_folder; }
+
 fs::path FileAccess::FindForReading(const std::string& name) const {
   if (name.find('\0') != std::string::npos)
     throw InputError("", "", "a file's name", "a zero byte");
   fs::path found = name;
   if (found.is_relative()) {
-    for (const fs::path& folder : readable_) {
+    std::vector<fs::path> folders = readable_;
+    if (!data_folder_.empty()) folders.push_back(data_folder_);
+    for (const fs::path& folder : folders) {
       const fs::path candidate = folder == "." ? fs::path(name) : folder / name;
       std::error_code ignored;
       if (fs::exists(candidate, ignored)) {
@@ -53,7 +57,11 @@ fs::path FileAccess::FindForReading(const std::string& name) const {
     }
   }
   RequirePlainFile(found, name);
-  if (std::none_of(readable_.begin(), readable_.end(),
+  std::vector<fs::path> allowed = readable_;
+  if (!data_folder_.empty()) {
+    for (const char* part : {"assets", "scenes"}) allowed.push_back(data_folder_ / part);
+  }
+  if (std::none_of(allowed.begin(), allowed.end(),
                    [&](const fs::path& folder) { return IsBelow(found, folder); })) {
     throw InputError(name, "", "a file in the working directory, the script's folder or the assets",
                      "one elsewhere");

@@ -15,6 +15,8 @@ class FileAccess {
   FileAccess();
 
   void AllowReadsBelow(const std::filesystem::path& folder);
+  /// The program's own scenes and assets, found as "scenes/.." and "assets/.." from anywhere.
+  void AllowProgramFiles(const std::filesystem::path& data_folder);
 
   /// A relative `name` is looked for in the folders in the order they were allowed.
   /// @returns the name under which it was found, relative if it was given so and lies in the
@@ -32,6 +34,7 @@ class FileAccess {
 
  private:
   std::vector<std::filesystem::path> readable_;  // as given
+  std::filesystem::path data_folder_;            // searched last; only parts of it are readable
   std::filesystem::path output_ = "out";
 };
 

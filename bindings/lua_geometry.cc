@@ -10,13 +10,13 @@ const Schema kCloud{"Cloud", {"count", "points", "normals"}};
 const Schema kDistance{"Distance", {"phi", "nhat"}};
 const Schema kMesh{"Mesh", {"num_vertices", "num_triangles", "vertices", "triangles"}};
 
-constexpr int kMaxPoints = 100000;
+constexpr int kMaxPoints = 4096;  // farthest-point sampling grows with the square
 
 }  // namespace
 
 Pushed PushCloud(lua_State* L, Session& session, int points) {
   if (points < 1 || points > kMaxPoints) {
-    throw InputError("", "points", "1 to 100000", std::to_string(points));
+    throw InputError("", "points", "1 to 4096", std::to_string(points));
   }
   const PointCloud cloud = SamplePointCloud(session.scene().object().shape, points,
                                             Rng(session.config().seed, RngStream::kPointCloud));

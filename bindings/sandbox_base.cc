@@ -30,6 +30,7 @@ int Print(lua_State* L) {
   }
   line += '\n';
   std::fwrite(line.data(), 1, line.size(), stdout);
+  std::fflush(stdout);  // a long script's progress is seen as it comes, in a pipe too
   return 0;
 }
 

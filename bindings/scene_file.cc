@@ -53,7 +53,7 @@ void FinishScene(Scene& scene, const fs::path& folder, std::vector<Setting>& set
   ValidateScene(scene);
   FileAccess files;
   files.AllowReadsBelow(folder);
-  files.AllowReadsBelow(DataFolder() / "assets");
+  files.AllowProgramFiles(DataFolder());
   for (Body& body : scene.bodies) {
     std::visit(FileFinder{folder, files, body.where}, body.shape);
   }

@@ -176,26 +176,46 @@ void OpenPregrasp(Machine& machine, ScriptContext& context) {
   SetModule(L, "pregrasp");
 }
 
-void RunScript(const fs::path& file, const std::vector<std::string>& arguments,
-               const ScriptConfig& config) {
+namespace {
+
+void RunInMachine(const fs::path& file, const std::vector<std::string>& arguments,
+                  const ScriptConfig& config) {
   ScriptContext context{config, {}};
   Machine machine(config.machine);
-  machine.files().AllowReadsBelow(DataFolder() / "assets");
+  machine.files().AllowProgramFiles(DataFolder());
   machine.files().SetOutput(config.output);
   OpenPregrasp(machine, context);
   lua_State* L = machine.state();
   machine.LoadFile(L, file);
-  luaL_checkstack(L, static_cast<int>(arguments.size()) + 2, "too many arguments");
+  const int count = static_cast<int>(arguments.size());
+  if (lua_checkstack(L, count + 2) == 0) {
+    throw InputError("ARGS", "", "fewer arguments", std::to_string(count));
+  }
   for (const std::string& argument : arguments) {
     lua_pushlstring(L, argument.data(), argument.size());
   }
   try {
-    machine.Call(static_cast<int>(arguments.size()), 0);
+    machine.Call(count, 0);
   } catch (const Interrupted&) {
     for (const auto& session : context.recording) session->FinishRecording("interrupted");
     throw;
   }
   for (const auto& session : context.recording) session->FinishRecording();
+}
+
+}  // namespace
+
+void RunScript(const fs::path& file, const std::vector<std::string>& arguments,
+               const ScriptConfig& config) {
+  std::error_code ignored;
+  const bool had_output = fs::exists(config.output, ignored);
+  try {
+    RunInMachine(file, arguments, config);
+  } catch (const std::exception&) {
+    // What was recorded is gone with its session; so is the folder that was made for it, if empty.
+    if (!had_output) fs::remove(config.output, ignored);
+    throw;
+  }
 }
 
 }  // namespace pregrasp

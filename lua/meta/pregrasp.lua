@@ -14,7 +14,8 @@
 ---@field seed integer of everything random: --seed
 local pregrasp = {}
 
----Opens a scene: a file (looked for in the working directory, then beside the script), what scene{..} gave, or its table.
+---Opens a scene: a file (looked for in the working directory, beside the script, then among the program's own),
+---what scene{..} gave, or its table.
 ---@param scene string|Scene|SceneTable
 ---@param options? OpenOptions
 ---@return Session
@@ -196,7 +197,7 @@ function Session:body(name) end
 function Session:cloud(options) end
 
 ---@class CloudOptions
----@field points? integer 512
+---@field points? integer 512; at most 4096
 
 ---@class Cloud
 ---@field count integer

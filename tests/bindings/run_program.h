@@ -14,7 +14,7 @@
 namespace pregrasp {
 
 struct ProgramResult {
-  int code = -1;
+  int code = -1;  ///< 128 + signal when one ended it
   std::string out, err;
 };
 
@@ -25,33 +25,42 @@ inline std::string ReadText(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// Runs the built pregrasp with `arguments` in the folder `directory`. What it prints is caught in
-/// files outside of that folder.
-inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
-                                const std::filesystem::path& directory) {
-  std::string captured =
-      (std::filesystem::temp_directory_path() / "pregrasp_output_XXXXXX").string();
-  const std::filesystem::path folder = mkdtemp(captured.data());
+/// Starts the built pregrasp in the folder `directory`; what it prints goes to the files out and
+/// err in `captured`.
+inline pid_t StartProgram(const std::vector<std::string>& arguments,
+                          const std::filesystem::path& directory,
+                          const std::filesystem::path& captured) {
+  std::filesystem::create_directories(captured);
+  std::vector<char*> argv{const_cast<char*>(PREGRASP_PROGRAM)};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
   const pid_t child = fork();
-  if (child == 0) {
-    std::vector<char*> argv{const_cast<char*>(PREGRASP_PROGRAM)};
-    for (const std::string& argument : arguments)
-      argv.push_back(const_cast<char*>(argument.c_str()));
-    argv.push_back(nullptr);
-    const int flags = O_WRONLY | O_CREAT | O_TRUNC;
-    const bool ready = chdir(directory.c_str()) == 0 &&
-                       dup2(open((folder / "out").c_str(), flags, 0600), 1) == 1 &&
-                       dup2(open((folder / "err").c_str(), flags, 0600), 2) == 2;
-    if (ready) execv(argv[0], argv.data());
-    _exit(127);
-  }
+  if (child != 0) return child;
+  const int flags = O_WRONLY | O_CREAT | O_TRUNC;
+  const bool ready = dup2(open((captured / "out").c_str(), flags, 0600), 1) == 1 &&
+                     dup2(open((captured / "err").c_str(), flags, 0600), 2) == 2 &&
+                     chdir(directory.c_str()) == 0;
+  if (ready) execv(argv[0], argv.data());
+  _exit(127);
+}
+
+inline ProgramResult AwaitProgram(pid_t child, const std::filesystem::path& captured) {
   int status = 0;
   waitpid(child, &status, 0);
   ProgramResult result;
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  result.out = ReadText(folder / "out");
-  result.err = ReadText(folder / "err");
-  std::filesystem::remove_all(folder);
+  result.out = ReadText(captured / "out");
+  result.err = ReadText(captured / "err");
+  return result;
+}
+
+/// Runs it to its end.
+inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
+                                const std::filesystem::path& directory) {
+  std::string name = (std::filesystem::temp_directory_path() / "pregrasp_output_XXXXXX").string();
+  const std::filesystem::path captured = mkdtemp(name.data());
+  const ProgramResult result = AwaitProgram(StartProgram(arguments, directory, captured), captured);
+  std::filesystem::remove_all(captured);
   return result;
 }
 

@@ -1,0 +1,5 @@
+-- Lua 5.4; scene files have the constructors as globals.
+std = "lua54"
+max_line_length = 120
+files["scenes"] = { read_globals = { "scene", "box", "cylinder", "capsule", "sphere", "mesh", "cloud", "union" } }
+files["lua/meta"] = { ignore = { "212", "241" } } -- annotations have empty bodies
