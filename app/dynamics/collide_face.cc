@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/dynamics/collide.h"
+#include "app/dynamics/rim.h"
 #include "app/dynamics/support.h"
 
 namespace pregrasp::internal {
@@ -49,26 +50,28 @@ void AddBoxCorners(const FacePlane& plane, Manifold* manifold) {
 // A cylinder against the plane: its lower end's rim, or the line of its side nearest to the plane.
 void AddCylinderPoints(const FacePlane& plane, Manifold* manifold) {
   constexpr double kEndCosine = 0.5;
-  constexpr double kFlat = 3e-5;  // [rad]; lying flatter, it touches with four fixed points
   const Convex& q = *plane.q.convex;
   const Vector3 axis = plane.R_AQ.col(2);
   const Vector3 nhat = plane.s * Vector3::Unit(plane.i);
   const double c = axis.dot(nhat);
-  const Vector3 down = c * axis - nhat;  // towards the plane, at right angles to the axis
-  const double sine = down.norm();
   if (std::abs(c) < kEndCosine) {
-    const Vector3 radial = down * (q.radius / sine);
-    plane.Add(plane.p_AQ - q.half_height * axis + radial, 4, manifold);
-    plane.Add(plane.p_AQ + q.half_height * axis + radial, 5, manifold);
+    // Towards the plane, at right angles to the axis.
+    const Vector3 radial = (c * axis - nhat).normalized() * q.radius;
+    plane.Add(plane.p_AQ - q.half_height * axis + radial, 8, manifold);
+    plane.Add(plane.p_AQ + q.half_height * axis + radial, 9, manifold);
     return;
   }
+  const Vector3 turn = plane.a.R_WP.transpose() * (plane.q.turn_W - plane.a.turn_W);
+  const Vector3 nhat_next = nhat - turn.cross(nhat);  // as the turning cylinder sees it
+  const auto down = [&plane](const Vector3& n) {
+    return Vector2(-n.dot(plane.R_AQ.col(0)), -n.dot(plane.R_AQ.col(1)));
+  };
+  const RimPoints rim = ChooseRimPoints(q.radius, down(nhat), down(nhat_next));
   const Vector3 center = plane.p_AQ - std::copysign(q.half_height, c) * axis;
-  const Vector3 u = (sine > kFlat ? Vector3(down / sine) : Vector3(plane.R_AQ.col(0))) * q.radius;
-  const Vector3 w = axis.cross(u);
-  plane.Add(center + u, 0, manifold);
-  plane.Add(center + w, 1, manifold);
-  plane.Add(center - u, 2, manifold);
-  plane.Add(center - w, 3, manifold);
+  for (int k = 0; k < 4; ++k) {
+    const Vector2 r = q.radius * rim.directions[k];
+    plane.Add(center + r.x() * plane.R_AQ.col(0) + r.y() * plane.R_AQ.col(1), rim.ids[k], manifold);
+  }
 }
 
 void AddCapsulePoints(const FacePlane& plane, Manifold* manifold) {

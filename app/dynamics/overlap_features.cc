@@ -3,6 +3,7 @@
 
 #include "app/dynamics/collide.h"
 #include "app/dynamics/feature.h"
+#include "app/dynamics/rim.h"
 
 namespace pregrasp {
 namespace {
@@ -12,9 +13,6 @@ using Kind = Feature::Kind;
 // Points this little outside an outline count as inside [m]: edges that coincide but for rounding
 // would cross anywhere.
 constexpr double kWeld = 1e-6;
-// A disc tilted by less than this against what it lies on [rad] touches with four fixed points of
-// its rim; tilted more, its lowest point leads.
-constexpr double kFlat = 3e-5;
 // Faces steeper than this cosine against the contact's plane have no useful height over it.
 constexpr double kMinCosine = 0.05;
 // Discs tilted by less than this [rad] are circles seen along the normal but for 0.1 % of their
@@ -34,7 +32,8 @@ struct Outline {
   Vector2 gradient = Vector2::Zero();  // of the height over x and y, of polygons and discs
   double orientation = 1.0;            // -1 if the corners run clockwise
   Vector2 u = Vector2::Zero(), w = Vector2::Zero();  // a disc's half axes, projected
-  Eigen::Matrix2d to_unit;                           // maps the projected disc to the unit disc
+  double radius = 0.0;
+  Eigen::Matrix2d to_unit;  // maps the projected disc to the unit disc
   bool steep = false;
 
   double Height(double x, double y) const {
@@ -73,14 +72,16 @@ struct Candidate {
 
 class Overlap {
  public:
-  Overlap(const Feature& a, const Feature& b, const Vector3& nhat_W)
-      : R_WT_(FrameFromNormal(nhat_W)), origin_(a.points[0]) {
-    Project(a, &a_);
-    Project(b, &b_);
+  Overlap(const PlacedConvex& a, const PlacedConvex& b, const Feature& feature_a,
+          const Feature& feature_b, const Vector3& nhat_W)
+      : R_WT_(FrameFromNormal(nhat_W)),
+        origin_(feature_a.points[0]),
+        approach_(a, b, origin_, R_WT_) {
+    Project(feature_a, &a_);
+    Project(feature_b, &b_);
   }
 
-  OverlapResult Find(const PlacedConvex& a, const PlacedConvex& b, double margin,
-                     Manifold* manifold) {
+  OverlapResult Find(double margin, Manifold* manifold) {
     if (a_.steep || b_.steep) return OverlapResult::kNone;
     if (a_.is_region() && b_.is_region()) {
       AddRegions();
@@ -93,7 +94,7 @@ class Overlap {
     }
     if (count_ == 0) return OverlapResult::kNone;
     if (IsSliver(a_) || IsSliver(b_)) return OverlapResult::kSliver;
-    return Report(Approach(a, b, origin_, R_WT_), margin, manifold);
+    return Report(margin, manifold);
   }
 
  private:
@@ -113,6 +114,7 @@ class Overlap {
     if (feature.kind == Kind::kDisc) {
       outline->u = (R_WT_.transpose() * feature.u_W).head<2>();
       outline->w = (R_WT_.transpose() * feature.w_W).head<2>();
+      outline->radius = feature.u_W.norm();
       Eigen::Matrix2d from_unit;
       from_unit << outline->u, outline->w;
       outline->to_unit = from_unit.inverse();
@@ -141,23 +143,23 @@ class Overlap {
       }
       return all;
     }
-    // Down the slope of the gap, and at right angles to that.
     const Vector2 slope = b_.gradient - a_.gradient;
-    double angle = 0.0;
-    if (slope.norm() > kFlat) {
-      angle = std::atan2(-slope.dot(region.w), -slope.dot(region.u));
-    }
+    const Vector2 slope_next = slope + Vector2(approach_.per_x, approach_.per_y);
+    const auto down = [&region](const Vector2& s) -> Vector2 {
+      return Vector2(-s.dot(region.u), -s.dot(region.w)) / region.radius;
+    };
+    const RimPoints rim = ChooseRimPoints(region.radius, down(slope), down(slope_next));
     for (int k = 0; k < 4; ++k) {
-      const double c = std::cos(angle + 0.5 * kPi * k), s = std::sin(angle + 0.5 * kPi * k);
-      const Vector2 p = region.points[0].head<2>() + c * region.u + s * region.w;
+      const Vector2& r = rim.directions[k];
+      const Vector2 p = region.points[0].head<2>() + r.x() * region.u + r.y() * region.w;
       if (other.Contains(p.x(), p.y())) {
-        AddAt(p.x(), p.y(), base + k);
+        AddAt(p.x(), p.y(), base + rim.ids[k]);
       } else {
         all = false;
       }
     }
-    // Four points inside a polygon do not mean that the whole disc is.
     if (!all || other.kind == Kind::kDisc) return all;
+    // Four points inside a polygon do not mean that the whole disc is.
     for (int i = 0; i < other.size; ++i) {
       const double reach = RimReach(region, other, i);
       if (other.Inside(i, region.points[0].x(), region.points[0].y()) < reach) return false;
@@ -361,7 +363,7 @@ class Overlap {
     return false;
   }
 
-  OverlapResult Report(const Approach& approach, double margin, Manifold* manifold) {
+  OverlapResult Report(double margin, Manifold* manifold) {
     std::array<PlanarPoint, kMaxCandidates> points;
     std::array<int, kMaxCandidates> index;
     int near = 0;
@@ -375,7 +377,7 @@ class Overlap {
     if (near == 0) return OverlapResult::kNone;
     manifold->nhat_W = R_WT_.col(2);
     std::array<int, Manifold::kMaxPoints> chosen;
-    const int num_chosen = ChooseFour(points.data(), near, approach, &chosen);
+    const int num_chosen = ChooseFour(points.data(), near, approach_, &chosen);
     for (int n = 0; n < num_chosen; ++n) {
       const Candidate& c = candidates_[index[chosen[n]]];
       manifold->Add(origin_ + R_WT_ * Vector3(c.x, c.y, 0.5 * (c.height_a + c.height_b)),
@@ -386,6 +388,7 @@ class Overlap {
 
   const Matrix3 R_WT_;
   const Vector3 origin_;
+  const Approach approach_;
   Outline a_, b_;
   std::array<Candidate, kMaxCandidates> candidates_;
   int count_ = 0, count_b_ = 0;
@@ -397,7 +400,7 @@ OverlapResult OverlapFeatures(const PlacedConvex& a, const PlacedConvex& b,
                               const Feature& feature_a, const Feature& feature_b,
                               const Vector3& nhat_W, double margin, Manifold* manifold) {
   manifold->Clear();
-  return Overlap(feature_a, feature_b, nhat_W).Find(a, b, margin, manifold);
+  return Overlap(a, b, feature_a, feature_b, nhat_W).Find(margin, manifold);
 }
 
 }  // namespace pregrasp
