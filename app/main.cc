@@ -26,10 +26,11 @@ int Run(int argc, char** argv) {
                "pregrasp");
   app.require_subcommand(0, 1);
   app.set_help_flag("-h,--help", "This text");
-  app.footer("Exit codes: 0 done; 2 bad input, one line says what; 1 a bug of ours.");
+  app.footer("Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of ours.");
   Action action;
   AddCheck(app, action);
   AddInfo(app, action);
+  AddRun(app, action);
   AddScript(app, action);
   try {
     app.parse(argc, argv);

@@ -50,6 +50,10 @@ void RecordResult(const IkResult& result, LooseningRung rung, MotionFrame* frame
 
 }  // namespace
 
+const char* KeyframeOrderName(KeyframeOrder order) {
+  return order == KeyframeOrder::kReverse ? "reverse" : "forward";
+}
+
 const char* LooseningRungName(LooseningRung rung) {
   switch (rung) {
     case LooseningRung::kNone:

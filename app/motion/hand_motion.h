@@ -12,6 +12,8 @@ namespace pregrasp {
 /// In which order keyframes are solved; each is warm-started from the one solved before it. The
 /// paper solves the most constrained one, the last, first.
 enum class KeyframeOrder { kReverse, kForward };
+/// "reverse", "forward".
+const char* KeyframeOrderName(KeyframeOrder order);
 
 /// What may be given up, in this order, when a frame has no strict solution; each rung keeps what
 /// the rungs before it gave up. The surroundings are never entered.

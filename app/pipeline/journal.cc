@@ -4,6 +4,8 @@
 
 #include <chrono>
 
+#include "app/recording/checked_file.h"
+
 namespace pregrasp {
 namespace {
 
@@ -50,7 +52,7 @@ void PictureDrawer::Draw(const JournalStep& step, const WorldState& start,
   if (!maker_) maker_ = std::make_unique<PictureMaker>(world_);
   const PictureConfig config = step.shot ? step.shot->config : PictureConfig{};
   const RenderScene scene =
-      maker_->Compose(step.state, step.contacts, start, Caption(step), config);
+      maker_->Compose(step.state, step.contacts, start, step.overlay.get(), Caption(step), config);
   WritePng(SharedRenderer().Render(scene, {config.width, config.height, config.quality}), file);
 }
 
@@ -60,7 +62,7 @@ JournalWriter::JournalWriter(const std::filesystem::path& directory, const World
 
 void JournalWriter::Write(const JournalStep& step, const WorldState& start, PictureDrawer& drawer) {
   const bool wanted = pictures_ == PictureMode::kAll ||
-                      (pictures_ == PictureMode::kKey && (step.shot || next_ == 0));
+                      (pictures_ == PictureMode::kKey && (step.shot || step.key || next_ == 0));
   if (wanted) {
     const auto begin = std::chrono::steady_clock::now();
     drawer.Draw(step, start, run_.NextPicture(step.record.id));
@@ -76,13 +78,15 @@ void JournalWriter::WriteUpToLast(const std::vector<JournalStep>& journal, const
 }
 
 void JournalWriter::Finish(const std::vector<JournalStep>& journal, const WorldState& start,
-                           PictureDrawer& drawer, const std::vector<WorldState>& rollout,
-                           const nlohmann::json& summary, const nlohmann::json& configuration) {
+                           PictureDrawer& drawer, const RunOutcome& outcome) {
   while (next_ < journal.size()) Write(journal[next_], start, drawer);
-  for (const WorldState& state : rollout) run_.AddRolloutRow(state);
-  nlohmann::json complete = summary;
+  for (const WorldState& state : outcome.rollout) run_.AddRolloutRow(state);
+  if (!outcome.motion_table.empty()) {
+    WriteFile(run_.partial() / "motion.csv", outcome.motion_table);
+  }
+  nlohmann::json complete = outcome.summary;
   complete["seconds"]["pictures"] = picture_seconds_;
-  run_.Finish(complete, configuration);
+  run_.Finish(complete, outcome.configuration);
 }
 
 }  // namespace pregrasp

@@ -16,7 +16,7 @@ namespace pregrasp {
 /// Which steps get a picture.
 enum class PictureMode {
   kNone,  ///< none, whatever is asked for
-  kKey,   ///< the start, and those asked for
+  kKey,   ///< the start, the planner's key steps, and those asked for
   kAll,   ///< every step
 };
 
@@ -25,13 +25,23 @@ struct JournalStep {
   StepRecord record;
   WorldState state;
   std::vector<ContactPoint> contacts;
-  std::vector<std::string> lines;  ///< what happened and why
+  std::vector<std::string> lines;                 ///< what happened and why
+  std::shared_ptr<const PictureOverlay> overlay;  ///< what a planning stage adds; null for nothing
+  bool key = false;                               ///< gets a picture in PictureMode::kKey
   /// A picture that was asked for.
   struct Shot {
     PictureConfig config;
     std::string caption;  ///< in place of the lines, unless empty
   };
   std::optional<Shot> shot;
+};
+
+/// What a run comes to beside its steps.
+struct RunOutcome {
+  std::vector<WorldState> rollout;  ///< rollout.csv, every physics step
+  std::string motion_table;         ///< motion.csv, empty for none
+  nlohmann::json summary;           ///< any of the fields of summary.json
+  nlohmann::json configuration;     ///< for manifest.json
 };
 
 /// Draws steps. The renderer is made when the first picture is: a run without pictures never loads
@@ -67,8 +77,7 @@ class JournalWriter {
 
   /// Writes the rest and the trajectory, and puts the run in its place.
   void Finish(const std::vector<JournalStep>& journal, const WorldState& start,
-              PictureDrawer& drawer, const std::vector<WorldState>& rollout,
-              const nlohmann::json& summary, const nlohmann::json& configuration);
+              PictureDrawer& drawer, const RunOutcome& outcome);
 
   std::filesystem::path directory() const { return run_.directory(); }
   double picture_seconds() const { return picture_seconds_; }

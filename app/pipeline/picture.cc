@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/geometry/tessellate.h"
+#include "app/hand/hand_shapes.h"
 #include "app/pipeline/camera.h"
 #include "app/pipeline/finger_stub.h"
 #include "app/pipeline/forces.h"
@@ -40,9 +41,12 @@ struct PictureMaker::Impl {
   MatrixX3 start_focus_W;  // what they show at least: one camera for a strip, while that does
   double metres_per_newton = 0.0;
 
-  RenderCamera ChooseCamera(const PictureConfig& config, const WorldState& state) const;
-  void AddBodies(RenderScene& scene, const WorldState& state, const WorldState& start,
-                 bool ghost) const;
+  RenderCamera ChooseCamera(const PictureConfig& config, const WorldState& state,
+                            const PictureOverlay& overlay) const;
+  void AddBodies(RenderScene& scene, const WorldState& state, const PictureOverlay& overlay) const;
+  void AddGhost(RenderScene& scene, const RigidTransform& X_WO, const Rgba& color) const;
+  void AddStartGhost(RenderScene& scene, const WorldState& state, const WorldState& start) const;
+  void AddOverlay(RenderScene& scene, const WorldState& state, const PictureOverlay& overlay) const;
   void AddFinger(RenderScene& scene, const WorldState& state, Finger finger,
                  const PictureConfig& config) const;
   void AddArrow(RenderScene& scene, const Vector3& p_W, bool ends_there, const Vector3& f_W,
@@ -68,40 +72,81 @@ PictureMaker::PictureMaker(std::shared_ptr<const World> world) : impl_(std::make
 
 PictureMaker::~PictureMaker() = default;
 
-RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config,
-                                              const WorldState& state) const {
+RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const WorldState& state,
+                                              const PictureOverlay& overlay) const {
   const auto& fixed = config.camera ? config.camera : world->scene().camera;
   if (fixed) return {fixed->p_WCam, fixed->p_WTarget, fixed->fov_deg};
   const double aspect = static_cast<double>(config.width) / config.height;
-  const MatrixX3 object_W = Placed(meshes[0]->V, state.bodies[0].X_WB());
+  MatrixX3 seen_W = Placed(meshes[0]->V, state.bodies[0].X_WB());
+  for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
+    Append(seen_W, Placed(meshes[0]->V, ghost.X_WO));
+  }
+  Append(seen_W, overlay.focus_W);
   const RenderCamera at_start = FrameCamera(start_focus_W, view_W, aspect);
   constexpr double kBorder = 0.08;
-  if (IsInSight(at_start, object_W, aspect, kBorder)) return at_start;
+  if (IsInSight(at_start, seen_W, aspect, kBorder)) return at_start;
   MatrixX3 focus_W = start_focus_W;
-  Append(focus_W, object_W);
+  Append(focus_W, seen_W);
   return FrameCamera(focus_W, view_W, aspect);
 }
 
 void PictureMaker::Impl::AddBodies(RenderScene& scene, const WorldState& state,
-                                   const WorldState& start, bool ghost) const {
+                                   const PictureOverlay& overlay) const {
   const std::vector<RigidTransform> X_WB = world->GetPoses(state);
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     RenderBody body;
     body.mesh = meshes[i];
     body.X_WB = X_WB[i];
+    if (i == 0 && overlay.contact_mesh) {
+      body.mesh = overlay.contact_mesh;
+      body.face_colors = overlay.face_colors;
+      body.edges = true;
+      body.smooth = false;
+    }
     const bool movable = world->scene().bodies[i].movable();
     const Rgba color = i == 0 ? ObjectColor() : movable ? NeighbourColor() : TableColor();
     scene.bodies.push_back(WithLook(body, color, movable ? 0.5F : 0.7F));
   }
+}
+
+void PictureMaker::Impl::AddGhost(RenderScene& scene, const RigidTransform& X_WO,
+                                  const Rgba& color) const {
+  RenderBody body;
+  body.mesh = meshes[0];
+  body.X_WB = X_WO;
+  body.color = color;
+  body.shading = Shading::kGhost;
+  scene.bodies.push_back(body);
+}
+
+void PictureMaker::Impl::AddStartGhost(RenderScene& scene, const WorldState& state,
+                                       const WorldState& start) const {
   const Motion motion = CalcObjectMotion(*world, start, state);
-  if (ghost && (motion.moved > kGhostAfter || motion.rotated > kGhostTurn)) {
-    RenderBody body;
-    body.mesh = meshes[0];
-    body.X_WB = start.bodies[0].X_WB();
-    body.color = WithAlpha(ObjectColor(), 0.35F);
-    body.shading = Shading::kGhost;
-    scene.bodies.push_back(body);
+  if (motion.moved <= kGhostAfter && motion.rotated <= kGhostTurn) return;
+  AddGhost(scene, start.bodies[0].X_WB(), WithAlpha(ObjectColor(), 0.35F));
+}
+
+void PictureMaker::Impl::AddOverlay(RenderScene& scene, const WorldState& state,
+                                    const PictureOverlay& overlay) const {
+  for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
+    AddGhost(scene, ghost.X_WO, ghost.color);
   }
+  const RigidTransform X_WO = state.bodies[0].X_WB();
+  for (const PictureOverlay::Place& place : overlay.places) {
+    constexpr float kRadius = 0.004F;  // [m]
+    scene.points.push_back({X_WO * place.p_OC, kRadius, place.color});
+  }
+  if (overlay.hand) {
+    const auto X_WL = CalcLinkPoses(ShadowHand(), *overlay.hand);
+    for (const HandShape& shape : ShadowHandShapes()) {
+      RenderBody body;
+      body.mesh = shape.mesh;
+      body.X_WB = X_WL[shape.link];
+      const auto& [r, g, b, a] = shape.rgba;
+      scene.bodies.push_back(WithLook(body, {r, g, b, a}, 0.45F));
+    }
+  }
+  scene.legend = overlay.legend;
 }
 
 void PictureMaker::Impl::AddArrow(RenderScene& scene, const Vector3& p_W, bool ends_there,
@@ -143,15 +188,19 @@ void PictureMaker::Impl::AddFinger(RenderScene& scene, const WorldState& state, 
 
 RenderScene PictureMaker::Compose(const WorldState& state,
                                   const std::vector<ContactPoint>& contacts,
-                                  const WorldState& start, const PictureText& text,
-                                  const PictureConfig& config) const {
+                                  const WorldState& start, const PictureOverlay* overlay,
+                                  const PictureText& text, const PictureConfig& config) const {
   config.Validate();
+  const PictureOverlay none;
+  if (overlay == nullptr) overlay = &none;
   RenderScene scene;
-  scene.camera = impl_->ChooseCamera(config, state);
-  impl_->AddBodies(scene, state, start, config.ghost);
-  for (int i = 0; i < kNumFingers; ++i) {
+  scene.camera = impl_->ChooseCamera(config, state, *overlay);
+  impl_->AddBodies(scene, state, *overlay);
+  if (config.ghost) impl_->AddStartGhost(scene, state, start);
+  for (int i = 0; i < kNumFingers && !overlay->hand; ++i) {
     impl_->AddFinger(scene, state, static_cast<Finger>(i), config);
   }
+  impl_->AddOverlay(scene, state, *overlay);
   if (config.contacts) {
     for (const ContactPoint& contact : contacts) {
       if (contact.body_a != 0 || contact.f_W.norm() < 1e-3) continue;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/dynamics/world.h"
+#include "app/hand/hand_model.h"
 #include "render/renderer.h"
 
 namespace pregrasp {
@@ -26,6 +27,29 @@ struct PictureConfig {
   void Validate() const;
 };
 
+/// What a planning stage adds to a picture of the world.
+struct PictureOverlay {
+  /// The contact mesh, in O, in place of the object; one colour a triangle.
+  std::shared_ptr<const TriangleMesh> contact_mesh;
+  std::vector<Rgba> face_colors;
+  /// The object at other times or in other plans.
+  struct Ghost {
+    RigidTransform X_WO = RigidTransform::Identity();
+    Rgba color;
+  };
+  std::vector<Ghost> ghosts;
+  /// Contacts of a hand on the object.
+  struct Place {
+    Vector3 p_OC = Vector3::Zero();
+    Rgba color;
+  };
+  std::vector<Place> places;
+  std::optional<HandConfiguration> hand;  ///< the whole hand, in place of the two fingers
+  RenderLegend legend;
+  /// What the picture shows at least, in automatic pictures (#points x 3, world).
+  MatrixX3 focus_W = MatrixX3(0, 3);
+};
+
 /// The words of a picture.
 struct PictureText {
   std::string title;
@@ -39,10 +63,10 @@ class PictureMaker {
   explicit PictureMaker(std::shared_ptr<const World> world);
   ~PictureMaker();
 
-  /// @param start  where the ghost is.
+  /// @param start  where the ghost is.  @param overlay  null for none.
   RenderScene Compose(const WorldState& state, const std::vector<ContactPoint>& contacts,
-                      const WorldState& start, const PictureText& text,
-                      const PictureConfig& config) const;
+                      const WorldState& start, const PictureOverlay* overlay,
+                      const PictureText& text, const PictureConfig& config) const;
 
  private:
   struct Impl;

@@ -77,7 +77,7 @@ JournalStep Session::MakeStep(const std::string& id, const std::string& stage,
   return step;
 }
 
-void Session::Append(JournalStep step) {
+void Session::AddStep(JournalStep step) {
   journal_.push_back(std::move(step));
   if (recorder_) recorder_->WriteUpToLast(journal_, start_, *drawer_);
 }
@@ -106,7 +106,7 @@ SettleResult Session::Settle(double seconds) {
                             result.at_rest ? "stays at rest" : "does not stay at rest"),
                 fmt::format("moved\t{:.4f} mm", 1e3 * result.largest.moved),
                 fmt::format("turned\t{:.4f} deg", RadToDeg(result.largest.rotated))};
-  Append(std::move(step));
+  AddStep(std::move(step));
   return result;
 }
 
@@ -131,7 +131,7 @@ void Session::Act(const std::shared_ptr<Simulation>& simulation, const std::stri
     step.record.details = std::move(details);
     step.lines = DescribeStep(*world_, before, after, simulation->contacts());
     step.lines.insert(step.lines.begin(), what);
-    Append(std::move(step));
+    AddStep(std::move(step));
   };
   try {
     action();
@@ -209,7 +209,7 @@ void Session::Shoot(const Simulation* simulation, const PictureConfig& config,
                             ? StepOf(*simulation)
                             : journal_.back();
     again.shot.reset();
-    Append(std::move(again));
+    AddStep(std::move(again));
   }
   journal_.back().shot = JournalStep::Shot{config, caption};
 }
@@ -241,39 +241,41 @@ void Session::Record(const std::filesystem::path& directory, PictureMode picture
   recorder_->WriteUpToLast(journal_, start_, *drawer_);
 }
 
-void Session::Finish(JournalWriter& writer, const std::optional<std::string>& status) {
-  std::vector<WorldState> rollout;
+RunOutcome Session::OutcomeOfSimulation() const {
+  RunOutcome outcome;
   if (last_) {
-    for (int i = 0; i < last_->num_states(); ++i) rollout.push_back(last_->state_at(i));
+    for (int i = 0; i < last_->num_states(); ++i) outcome.rollout.push_back(last_->state_at(i));
   } else {
-    rollout.push_back(start_);
-  }
-  const Motion motion = CalcObjectMotion(*world_, rollout.front(), rollout.back());
-  double max_speed = 0.0;
-  for (const WorldState& state : rollout) {
-    max_speed = std::max(max_speed, state.bodies[0].v_WB.norm());
+    outcome.rollout.push_back(start_);
   }
   const double max_penetration = last_ ? last_->CalcMaxPenetration() : 0.0;
-  nlohmann::json summary = {
-      {"object_motion",
-       {{"translation_m", motion.moved},
-        {"rotation_deg", RadToDeg(motion.rotated)},
-        {"max_speed", max_speed}}},
-      {"physics", {{"max_penetration_mm", 1e3 * max_penetration}}},
-      {"seconds",
-       {{"total",
-         std::chrono::duration<double>(std::chrono::steady_clock::now() - opened_).count()}}},
-      {"peak_rss_mb", PeakMegabytes()}};
-  if (status) summary["status"] = *status;
+  outcome.summary["physics"]["max_penetration_mm"] = 1e3 * max_penetration;
+  return outcome;
+}
+
+void Session::Finish(JournalWriter& writer, const std::optional<std::string>& status) {
+  RunOutcome outcome = outcome_ ? *outcome_ : OutcomeOfSimulation();
+  if (outcome.rollout.empty()) outcome.rollout.push_back(start_);
+  const Motion motion = CalcObjectMotion(*world_, outcome.rollout.front(), outcome.rollout.back());
+  double max_speed = 0.0;
+  for (const WorldState& state : outcome.rollout) {
+    max_speed = std::max(max_speed, state.bodies[0].v_WB.norm());
+  }
+  outcome.summary["object_motion"] = {{"translation_m", motion.moved},
+                                      {"rotation_deg", RadToDeg(motion.rotated)},
+                                      {"max_speed", max_speed}};
+  outcome.summary["seconds"]["total"] =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - opened_).count();
+  outcome.summary["peak_rss_mb"] = PeakMegabytes();
+  if (status) outcome.summary["status"] = *status;
   const StepConfig& step = world_->config();
-  const nlohmann::json configuration = {{"dynamics",
-                                         {{"dt", step.dt},
-                                          {"tolerance", step.tolerance},
-                                          {"max_sweeps", step.max_sweeps},
-                                          {"max_sweeps_many", step.max_sweeps_many},
-                                          {"margin", step.margin},
-                                          {"restitution", step.restitution}}}};
-  writer.Finish(journal_, start_, *drawer_, rollout, summary, configuration);
+  outcome.configuration["dynamics"] = {{"dt", step.dt},
+                                       {"tolerance", step.tolerance},
+                                       {"max_sweeps", step.max_sweeps},
+                                       {"max_sweeps_many", step.max_sweeps_many},
+                                       {"margin", step.margin},
+                                       {"restitution", step.restitution}};
+  writer.Finish(journal_, start_, *drawer_, outcome);
 }
 
 std::filesystem::path Session::Save(const std::optional<std::filesystem::path>& directory) {

@@ -42,6 +42,7 @@ class Session {
   const Scene& scene() const { return world_->scene(); }
   const SessionConfig& config() const { return config_; }
   const World& world() const { return *world_; }
+  const std::shared_ptr<const World>& shared_world() const { return world_; }
   const WorldState& start() const { return start_; }
   const std::string& last_step_id() const { return journal_.back().record.id; }
   ThreadPool& pool();
@@ -74,6 +75,15 @@ class Session {
   void ShootToFile(const Simulation* simulation, const PictureConfig& config,
                    const std::string& caption, const std::filesystem::path& file);
 
+  // What planning stages do, each as one step of the journal.
+
+  /// A step with the poses and fingers of `state`, ready for its details, lines and overlay.
+  JournalStep MakeStep(const std::string& id, const std::string& stage, const WorldState& state,
+                       const std::vector<ContactPoint>& contacts) const;
+  void AddStep(JournalStep step);
+  /// What the run comes to, in place of the last simulation.
+  void SetOutcome(RunOutcome outcome) { outcome_ = std::move(outcome); }
+
   /// From now on steps go to a run directory as they come, those that there are first.
   /// @throws InputError when one is open already, or as RunDirectory does.
   void Record(const std::filesystem::path& directory, PictureMode pictures);
@@ -91,12 +101,10 @@ class Session {
  private:
   void Act(const std::shared_ptr<Simulation>& simulation, const std::string& what,
            nlohmann::json details, const std::function<void()>& action);
-  JournalStep MakeStep(const std::string& id, const std::string& stage, const WorldState& state,
-                       const std::vector<ContactPoint>& contacts) const;
-  void Append(JournalStep step);
   JournalStep StepOf(const Simulation& simulation) const;
   std::unique_ptr<JournalWriter> OpenWriter(const std::filesystem::path& directory,
                                             PictureMode pictures);
+  RunOutcome OutcomeOfSimulation() const;
   void Finish(JournalWriter& writer, const std::optional<std::string>& status);
 
   SessionConfig config_;
@@ -108,6 +116,7 @@ class Session {
   std::unique_ptr<PictureDrawer> drawer_;
   std::vector<JournalStep> journal_;
   std::shared_ptr<const Simulation> last_;  // that acted last
+  std::optional<RunOutcome> outcome_;       // of a plan
   int num_actions_ = 0;
   std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
   std::unique_ptr<JournalWriter> recorder_;

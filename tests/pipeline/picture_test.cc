@@ -27,7 +27,7 @@ TEST(PictureMakerTest, ShowsEveryBodyTheFingerItsForceAndWhereTheObjectWas) {
   const Simulation sim = MakePulled(world);
   const PictureMaker maker(world);
   const RenderScene scene =
-      maker.Compose(sim.state(), sim.contacts(), world->InitialState(), {}, {});
+      maker.Compose(sim.state(), sim.contacts(), world->InitialState(), nullptr, {}, {});
   ASSERT_EQ(scene.bodies.size(), 2U + 1U + 3U);  // ruler, table; ghost; tip and two links
   EXPECT_EQ(scene.bodies[2].shading, Shading::kGhost);
   EXPECT_EQ(scene.bodies[2].mesh, scene.bodies[0].mesh);
@@ -49,8 +49,8 @@ TEST(PictureMakerTest, OverlaysCanBeLeftOut) {
   PictureConfig config;
   config.forces = config.cones = config.contacts = config.ghost = config.fingers = config.axes =
       false;
-  const RenderScene scene =
-      PictureMaker(world).Compose(sim.state(), sim.contacts(), world->InitialState(), {}, config);
+  const RenderScene scene = PictureMaker(world).Compose(sim.state(), sim.contacts(),
+                                                        world->InitialState(), nullptr, {}, config);
   EXPECT_EQ(scene.bodies.size(), 2U);
   EXPECT_TRUE(scene.arrows.empty() && scene.cones.empty() && scene.points.empty());
   EXPECT_TRUE(scene.labels.empty());
@@ -65,7 +65,7 @@ TEST(PictureMakerTest, TheAutomaticCameraHasTheObjectInSightWhereverItIs) {
   for (const double x : {-0.3, -0.16, 0.0, 0.5}) {
     WorldState state = world->InitialState();
     state.bodies[0].p_WB.x() = x;
-    const RenderScene scene = maker.Compose(state, {}, world->InitialState(), {}, {});
+    const RenderScene scene = maker.Compose(state, {}, world->InitialState(), nullptr, {}, {});
     MatrixX3 ends(2, 3);
     ends << x - 0.15, 0, 0, x + 0.15, 0, 0;
     EXPECT_TRUE(IsInSight(scene.camera, ends, 1280.0 / 720.0, 0.0)) << x;
@@ -76,9 +76,9 @@ TEST(PictureMakerTest, AStripOfSmallMotionsHasOneCamera) {
   const auto world = std::make_shared<const World>(MakeRulerScene());
   const PictureMaker maker(world);
   WorldState state = world->InitialState();
-  const RenderCamera first = maker.Compose(state, {}, state, {}, {}).camera;
+  const RenderCamera first = maker.Compose(state, {}, state, nullptr, {}, {}).camera;
   state.bodies[0].p_WB.x() += 0.03;
-  EXPECT_EQ(maker.Compose(state, {}, state, {}, {}).camera.p_WCam, first.p_WCam);
+  EXPECT_EQ(maker.Compose(state, {}, state, nullptr, {}, {}).camera.p_WCam, first.p_WCam);
 }
 
 TEST(IsInSightTest, KnowsThePyramidOfSight) {

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace pregrasp {
+
+/// Shows on stderr how long work comes along: on a terminal one line that changes in place, with
+/// rate and time left; elsewhere one plain line a stage.
+class ProgressLine {
+ public:
+  ProgressLine();
+  /// Ends the line.
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// `done` of `total` pieces of `stage` are done.
+  void Show(const std::string& stage, int done, int total);
+
+ private:
+  bool terminal_;
+  std::string stage_;
+  std::chrono::steady_clock::time_point stage_start_;
+};
+
+}  // namespace pregrasp

@@ -1,0 +1,121 @@
+#include "app/pipeline/run.h"
+
+#include <fmt/core.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands/commands.h"
+#include "app/commands/progress.h"
+#include "app/core/interrupt.h"
+#include "app/pipeline/planner_settings.h"
+#include "app/pipeline/start_verdict.h"
+#include "bindings/scene_file.h"
+#include "bindings/script.h"
+
+namespace pregrasp {
+namespace {
+
+constexpr int kNoSuccess = 3;
+
+struct RunOptions {
+  std::string scene;
+  std::uint64_t seed = 1;
+  std::string out;
+  RunConfig run;
+  int threads = 0;
+  std::vector<std::string> settings;
+  std::string pictures = "key";
+  std::string weights;
+  bool replace = false;
+};
+
+// The command that does the same again; pictures say it in their footer.
+std::string CommandLine(const RunOptions& options) {
+  std::string line = fmt::format("pregrasp run {} --seed {}", options.scene, options.seed);
+  for (const std::string& setting : options.settings) line += " --set " + setting;
+  return line;
+}
+
+void Print(const RunResult& result, const std::filesystem::path& out) {
+  for (const std::string& reason : result.reasons) fmt::print("{}\n", reason);
+  fmt::print("{}: {}\n", out.string(), RunStatusName(result.status));
+}
+
+int Run(const RunOptions& options) {
+  options.run.Validate();
+  std::vector<Setting> settings;
+  for (const std::string& setting : options.settings) settings.push_back(ParseSetting(setting));
+  Scene scene = LoadSceneFile(options.scene, settings);
+  PlannerConfig config;
+  ApplyPlannerSettings(config, settings);
+  RequireNoSettingsLeft(settings, PlannerRoots());
+  for (const std::string& departure : RuleDepartures(scene)) {
+    fmt::print(stderr, "{}: warning: {}\n", options.scene, departure);
+  }
+
+  SessionConfig session_config;
+  session_config.seed = options.seed;
+  session_config.threads = options.threads;
+  session_config.remake = CommandLine(options);
+  Session session(std::move(scene), session_config);
+  const std::filesystem::path weights = options.weights.empty()
+                                            ? DataFolder() / "assets" / "weights"
+                                            : std::filesystem::path(options.weights);
+  const Planner planner(session.shared_world(), session.start(), config, options.seed,
+                        session.pool(), weights);
+  PlanRecord record(session, planner);
+  const std::filesystem::path out = options.out.empty()
+                                        ? std::filesystem::path("out") / session.scene().name
+                                        : std::filesystem::path(options.out);
+  session.Record(out, ParsePictureMode(options.pictures, "--pictures", ""));
+  try {
+    ProgressLine line;
+    line.Show("start certificate", 0, 1);
+    const StartCertificate start = FindSceneVerdict(session.scene(), options.seed, session.pool());
+    const RunResult result =
+        RunPlanner(planner, record, start, options.run, [&](const RunProgress& progress) {
+          line.Show(progress.stage, progress.done, progress.total);
+        });
+    line.Show("pictures and log", 0, 1);
+    session.FinishRecording();
+    fmt::print("{}\n", DescribeStart(start));
+    Print(result, out);
+    return result.status == RunStatus::kOk ? 0 : kNoSuccess;
+  } catch (const Interrupted&) {
+    ClearInterrupt();
+    session.FinishRecording("interrupted");
+    throw;
+  }
+}
+
+}  // namespace
+
+void AddRun(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Plan: from a scene to a grasp and a hand motion");
+  command->add_option("SCENE", options->scene, "The scene, a Lua file")->required();
+  command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
+  command->add_option("--out", options->out,
+                      "The run directory; out/NAME by default. A finished run there is replaced");
+  command->add_option("--paths", options->run.paths, "Paths to optimise at most")
+      ->capture_default_str();
+  command->add_flag("--all", options->run.all, "Go on after the first success");
+  command->add_option("--threads", options->threads, "Threads; 0 is one per processor")
+      ->capture_default_str();
+  command
+      ->add_option("--set", options->settings,
+                   "Change a value: fingertips.friction=0.05, mppi.samples=64")
+      ->allow_extra_args(false);
+  command->add_option("--pictures", options->pictures, "none, key or all")->capture_default_str();
+  command->add_option("--weights", options->weights, "Folder of the networks' weights");
+  command->add_flag("--replace", options->replace,
+                    "Replace a finished run at DIR (which is done anyway)");
+  command->callback([options, &action] { action = [options] { return Run(*options); }; });
+}
+
+}  // namespace pregrasp

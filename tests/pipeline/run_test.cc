@@ -1,0 +1,139 @@
+#include "app/pipeline/run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/recording/checked_file.h"
+#include "app/recording/manifest.h"
+#include "tests/networks/random_network.h"
+#include "tests/pipeline/fixture.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Short runs with networks whose weights are random: what they find is poor, how they run is not.
+class RunTest : public testing::Test {
+ protected:
+  RunTest() {
+    std::string name = (fs::temp_directory_path() / "pregrasp_run_XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    WriteTensors(folder_ / "score.safetensors", MakeRandomScore(3));
+    WriteTensors(folder_ / "generator.safetensors", MakeRandomGenerator(4));
+    start_.verdict = StartVerdict::kCertified;
+    config_.graph.samples = 1;
+    config_.mppi.samples = 6;
+    config_.mppi.iterations = 3;
+    config_.grasp_samples = 2;
+    config_.completion.max_refinements = 2;
+    config_.completion.max_solves = 1;
+    config_.completion.grasp.kinematics.ik.max_starts = 2;
+    run_.paths = 2;
+  }
+  ~RunTest() override {
+    ClearInterrupt();
+    fs::remove_all(folder_);
+  }
+
+  RunResult RunInto(const std::string& name, int threads,
+                    const std::function<void(const RunProgress&)>& progress = {}) {
+    SessionConfig session_config;
+    session_config.threads = threads;
+    session_config.pictures = PictureMode::kNone;
+    Session session(MakeRulerScene(), session_config);
+    const Planner planner(session.shared_world(), session.start(), config_, 1, session.pool(),
+                          folder_);
+    PlanRecord record(session, planner);
+    session.Record(folder_ / name, PictureMode::kNone);
+    try {
+      RunResult result = RunPlanner(planner, record, start_, run_, progress);
+      session.FinishRecording();
+      return result;
+    } catch (const Interrupted&) {
+      ClearInterrupt();
+      session.FinishRecording("interrupted");
+      return {};
+    }
+  }
+
+  std::vector<std::string> Ids(const std::string& name) const {
+    std::vector<std::string> ids;
+    for (const StepRecord& step : LoadRun(folder_ / name).steps) ids.push_back(step.id);
+    return ids;
+  }
+
+  fs::path folder_;
+  StartCertificate start_;
+  PlannerConfig config_;
+  RunConfig run_;
+};
+
+TEST_F(RunTest, EveryStageIsAStepOfTheRunDirectory) {
+  const RunResult result = RunInto("run", 1);
+  EXPECT_EQ(result.reasons.size(), 2U);
+  const std::vector<std::string> ids = Ids("run");
+  const std::vector<std::string> head(ids.begin(), ids.begin() + 8);
+  EXPECT_EQ(head, (std::vector<std::string>{"scene.start", "graph.mesh", "graph.score",
+                                            "graph.prune.1", "graph.prune.2", "graph.prune.3",
+                                            "paths.rank.1", "path.1.mppi.1"}));
+  for (const char* id : {"path.1.mppi.3", "path.1.certify", "paths.rank.2", "path.2.certify"}) {
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 1) << id;
+  }
+  EXPECT_FALSE(VerifyManifest(folder_ / "run").has_value());
+}
+
+TEST_F(RunTest, TheSummarySaysWhatWasDone) {
+  const RunResult result = RunInto("run", 1);
+  const LoadedRun run = LoadRun(folder_ / "run");
+  EXPECT_EQ(run.summary["status"], RunStatusName(result.status));
+  EXPECT_EQ(run.summary["n_paths"], 2);
+  EXPECT_EQ(run.summary["counts"]["nodes"], 1600);
+  EXPECT_EQ(run.summary["counts"]["kept"].get<int>(),
+            run.manifest["configuration"]["graph"]["top_percent"] == 5.0 ? 160 : -1);
+  EXPECT_EQ(run.summary["counts"]["iterations"], 6);
+  EXPECT_EQ(run.summary["counts"]["rollouts"], 36);
+  EXPECT_EQ(run.summary["start_grasps"]["certified"], true);
+}
+
+TEST_F(RunTest, OneAndTwoThreadsGiveTheSameBytes) {
+  RunInto("one", 1);
+  RunInto("two", 2);
+  for (const char* file : {"steps.jsonl", "rollout.csv", "run.rawlog", "scene.json"}) {
+    EXPECT_EQ(ReadFile(folder_ / "one" / file), ReadFile(folder_ / "two" / file)) << file;
+  }
+}
+
+TEST_F(RunTest, AGraspableStartIsNotPlannedFor) {
+  start_.verdict = StartVerdict::kGraspable;
+  EXPECT_EQ(RunInto("run", 1).status, RunStatus::kStartGraspable);
+  EXPECT_EQ(LoadRun(folder_ / "run").summary["status"], "start_graspable");
+  EXPECT_EQ(Ids("run"), std::vector<std::string>{"scene.start"});
+}
+
+TEST_F(RunTest, AnInterruptLeavesAValidShorterRun) {
+  RunInto("run", 1, [](const RunProgress& progress) {
+    if (progress.stage == "path 1 of 2, trajectory" && progress.done == 2) RequestInterrupt();
+  });
+  EXPECT_EQ(LoadRun(folder_ / "run").summary["status"], "interrupted");
+  EXPECT_FALSE(VerifyManifest(folder_ / "run").has_value());
+  EXPECT_EQ(Ids("run").back(), "path.1.mppi.2");
+}
+
+TEST_F(RunTest, MissingWeightsAreBadInputThatNamesTheFile) {
+  fs::remove(folder_ / "score.safetensors");
+  try {
+    RunInto("run", 1);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("score.safetensors"), std::string::npos);
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "run"));
+}
+
+}  // namespace
+}  // namespace pregrasp
