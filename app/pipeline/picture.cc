@@ -30,6 +30,23 @@ void Append(MatrixX3& points, const MatrixX3& more) {
   points.bottomRows(more.rows()) = more;
 }
 
+void AddHand(RenderScene& scene, const HandConfiguration& hand,
+             const std::array<bool, kNumFingers>& touching) {
+  const auto X_WL = CalcLinkPoses(ShadowHand(), hand);
+  for (const HandShape& shape : ShadowHandShapes()) {
+    const auto& [r, g, b, a] = shape.rgba;
+    Rgba color{r, g, b, a};
+    for (int f = 0; f < kNumFingers; ++f) {
+      const Finger finger = static_cast<Finger>(f);
+      if (touching[f] && shape.link == DistalLink(finger)) color = FingerColor(finger);
+    }
+    RenderBody body;
+    body.mesh = shape.mesh;
+    body.X_WB = X_WL[shape.link];
+    scene.bodies.push_back(WithLook(body, color, 0.45F));
+  }
+}
+
 }  // namespace
 
 void PictureConfig::Validate() const { RenderConfig{width, height, quality}.Validate(); }
@@ -46,7 +63,7 @@ struct PictureMaker::Impl {
   void AddBodies(RenderScene& scene, const WorldState& state, const PictureOverlay& overlay) const;
   void AddGhost(RenderScene& scene, const RigidTransform& X_WO, const Rgba& color) const;
   void AddStartGhost(RenderScene& scene, const WorldState& state, const WorldState& start) const;
-  void AddOverlay(RenderScene& scene, const WorldState& state, const PictureOverlay& overlay) const;
+  void AddOverlay(RenderScene& scene, const PictureOverlay& overlay) const;
   void AddFinger(RenderScene& scene, const WorldState& state, Finger finger,
                  const PictureConfig& config) const;
   void AddArrow(RenderScene& scene, const Vector3& p_W, bool ends_there, const Vector3& f_W,
@@ -126,26 +143,11 @@ void PictureMaker::Impl::AddStartGhost(RenderScene& scene, const WorldState& sta
   AddGhost(scene, start.bodies[0].X_WB(), WithAlpha(ObjectColor(), 0.35F));
 }
 
-void PictureMaker::Impl::AddOverlay(RenderScene& scene, const WorldState& state,
-                                    const PictureOverlay& overlay) const {
+void PictureMaker::Impl::AddOverlay(RenderScene& scene, const PictureOverlay& overlay) const {
   for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
     AddGhost(scene, ghost.X_WO, ghost.color);
   }
-  const RigidTransform X_WO = state.bodies[0].X_WB();
-  for (const PictureOverlay::Place& place : overlay.places) {
-    constexpr float kRadius = 0.004F;  // [m]
-    scene.points.push_back({X_WO * place.p_OC, kRadius, place.color});
-  }
-  if (overlay.hand) {
-    const auto X_WL = CalcLinkPoses(ShadowHand(), *overlay.hand);
-    for (const HandShape& shape : ShadowHandShapes()) {
-      RenderBody body;
-      body.mesh = shape.mesh;
-      body.X_WB = X_WL[shape.link];
-      const auto& [r, g, b, a] = shape.rgba;
-      scene.bodies.push_back(WithLook(body, {r, g, b, a}, 0.45F));
-    }
-  }
+  if (overlay.hand) AddHand(scene, *overlay.hand, overlay.touching);
   scene.legend = overlay.legend;
 }
 
@@ -200,14 +202,14 @@ RenderScene PictureMaker::Compose(const WorldState& state,
   for (int i = 0; i < kNumFingers && !overlay->hand; ++i) {
     impl_->AddFinger(scene, state, static_cast<Finger>(i), config);
   }
-  impl_->AddOverlay(scene, state, *overlay);
+  impl_->AddOverlay(scene, *overlay);
   if (config.contacts) {
     for (const ContactPoint& contact : contacts) {
       if (contact.body_a != 0 || contact.f_W.norm() < 1e-3) continue;
       scene.points.push_back({contact.p_WC, 0.0022F, NeutralColor()});
     }
   }
-  if (config.forces) {
+  if (config.forces && overlay->forces) {
     const Body& object = impl_->world->scene().object();
     const Vector3 p_WBcm = state.bodies[0].X_WB() * object.mass_properties->p_BoBcm;
     const Vector3 weight_W = object.mass_properties->mass * impl_->world->scene().gravity;

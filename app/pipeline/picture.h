@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,13 +39,10 @@ struct PictureOverlay {
     Rgba color;
   };
   std::vector<Ghost> ghosts;
-  /// Contacts of a hand on the object.
-  struct Place {
-    Vector3 p_OC = Vector3::Zero();
-    Rgba color;
-  };
-  std::vector<Place> places;
   std::optional<HandConfiguration> hand;  ///< the whole hand, in place of the two fingers
+  /// Fingers of the hand that touch: their last links get the finger's colour.
+  std::array<bool, kNumFingers> touching{};
+  bool forces = true;  ///< false: no physics happens here, so no forces are drawn
   RenderLegend legend;
   /// What the picture shows at least, in automatic pictures (#points x 3, world).
   MatrixX3 focus_W = MatrixX3(0, 3);

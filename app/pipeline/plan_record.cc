@@ -7,7 +7,6 @@
 
 #include "app/core/check.h"
 #include "app/hand/hand_shapes.h"
-#include "app/pipeline/camera.h"
 #include "app/pipeline/describe_plan.h"
 #include "app/pipeline/planner_settings.h"
 #include "app/recording/motion_table.h"
@@ -43,6 +42,7 @@ RenderLegend ScoreLegend(const std::string& title, double low, double high) {
 // Shows the contact mesh with a colour for each triangle.
 std::shared_ptr<PictureOverlay> ShowMesh(const ContactGraph& graph, const Rgba& color) {
   auto overlay = std::make_shared<PictureOverlay>();
+  overlay->forces = false;
   overlay->contact_mesh = std::make_shared<const TriangleMesh>(graph.mesh());
   overlay->face_colors.assign(graph.num_triangles(), color);
   return overlay;
@@ -87,6 +87,7 @@ std::shared_ptr<PictureOverlay> ShowRollouts(const MppiState& state) {
   });
   if (best.size() > kGhostsShown) best.resize(kGhostsShown);
   auto overlay = std::make_shared<PictureOverlay>();
+  overlay->forces = false;
   const double low = best.front()->cost.total, high = best.back()->cost.total;
   for (const MppiSample* sample : best) {
     const double s = high > low ? (high - sample->cost.total) / (high - low) : 1.0;
@@ -98,7 +99,7 @@ std::shared_ptr<PictureOverlay> ShowRollouts(const MppiState& state) {
 
 void ShowContacts(PictureOverlay& overlay, const std::vector<GraspContact>& contacts) {
   for (const GraspContact& contact : contacts) {
-    overlay.places.push_back({contact.p_OC, FingerColor(contact.finger)});
+    overlay.touching[static_cast<int>(contact.finger)] = true;
     overlay.legend.swatches.emplace_back(FingerColor(contact.finger), FingerName(contact.finger));
   }
 }
@@ -110,6 +111,21 @@ void AppendHand(MatrixX3& points, const HandConfiguration& hand) {
   for (int link = 0; link < kNumHandLinks; ++link) {
     points.row(at + link) = X_WL[link].translation().transpose();
   }
+}
+
+// What every picture of a motion shows, so that they have one camera: the hand and the object at
+// all keyframes.
+MatrixX3 FocusOnMotion(const HandMotion& motion, const MotionState& state) {
+  constexpr double kHeadroom = 0.06;  // [m], for the card of text
+  MatrixX3 focus_W(0, 3);
+  for (const int key : motion.task().keyframes) {
+    if (state.frames[key].solved) AppendHand(focus_W, state.frames[key].configuration);
+  }
+  const Eigen::Index count = focus_W.rows();
+  focus_W.conservativeResize(2 * count, 3);
+  focus_W.bottomRows(count) =
+      focus_W.topRows(count).rowwise() + Vector3(0.0, 0.0, kHeadroom).transpose();
+  return focus_W;
 }
 
 Json GraspJson(const CompletedGrasp& grasp) {
@@ -273,16 +289,10 @@ void PlanRecord::AddGrasp(const Certificate& certificate, int path_rank, int sam
     overlay->hand = grasp.result.kinematics->ik.configuration();
     AppendHand(overlay->focus_W, *overlay->hand);
   }
+  // In few pictures: one grasp of each path that can be, and one that cannot.
+  step.key = grasps_shown_.insert({path_rank, grasp.feasible()}).second;
   step.overlay = overlay;
   session_.AddStep(std::move(step));
-}
-
-const MatrixX3& PlanRecord::MotionFocus(const HandMotion& motion, const MotionState& state) {
-  for (const int key : motion.task().keyframes) {
-    if (state.frames[key].solved) AppendHand(motion_focus_W_, state.frames[key].configuration);
-  }
-  if (motion_focus_W_.rows() > 8) motion_focus_W_ = FocusAround(motion_focus_W_, 0.0, 0.0);
-  return motion_focus_W_;
 }
 
 JournalStep PlanRecord::MakeFrameStep(const std::string& id, const HandMotion& motion,
@@ -304,7 +314,8 @@ JournalStep PlanRecord::MakeFrameStep(const std::string& id, const HandMotion& m
   step.lines = DescribeFrame(task, solved);
   auto overlay = std::make_shared<PictureOverlay>();
   overlay->hand = solved.configuration;
-  overlay->focus_W = MotionFocus(motion, state);
+  overlay->focus_W = FocusOnMotion(motion, state);
+  overlay->forces = false;
   for (int f = 0; f < kNumFingers; ++f) {
     if (!task.contacts[f].on) continue;
     ShowContacts(*overlay,

@@ -4,7 +4,10 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/grasp/start_certificate.h"
 #include "app/pipeline/planner.h"
@@ -76,7 +79,6 @@ class PlanRecord {
 
   JournalStep MakeFrameStep(const std::string& id, const HandMotion& motion,
                             const MotionState& state, int frame);
-  const MatrixX3& MotionFocus(const HandMotion& motion, const MotionState& state);
 
   Session& session_;
   const Planner& planner_;
@@ -84,7 +86,7 @@ class PlanRecord {
   std::map<std::string, double> seconds_;
   int num_paths_ = 0, num_iterations_ = 0;
   long num_rollouts_ = 0;
-  MatrixX3 motion_focus_W_ = MatrixX3(0, 3);  // what every picture of the motion shows
+  std::set<std::pair<int, bool>> grasps_shown_;  // (path, feasible) with a key picture
 };
 
 }  // namespace pregrasp
