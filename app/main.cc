@@ -30,6 +30,7 @@ int Run(int argc, char** argv) {
   Action action;
   AddCheck(app, action);
   AddInfo(app, action);
+  AddRepl(app, action);
   AddRun(app, action);
   AddScript(app, action);
   try {

@@ -29,6 +29,25 @@ double CoarseSeconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+// The Lua functions that are running, innermost first, at most so many.
+std::vector<std::string> TraceLua(lua_State* L) {
+  constexpr std::size_t kMost = 12;
+  std::vector<std::string> lines;
+  lua_Debug info{};
+  for (int level = 0; lua_getstack(L, level, &info) != 0; ++level) {
+    lua_getinfo(L, "Sln", &info);
+    if (info.currentline <= 0) continue;
+    if (lines.size() == kMost) {
+      lines.emplace_back("..");
+      break;
+    }
+    std::string line = std::string(info.short_src) + ":" + std::to_string(info.currentline);
+    if (info.name != nullptr) line += std::string(", in ") + info.name;
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
 // "name:12:" at the front, as Lua and WhereInLua write it.
 bool StartsWithPosition(const std::string& message) {
   for (std::size_t i = message.find(':'); i != std::string::npos; i = message.find(':', i + 1)) {
@@ -157,6 +176,7 @@ void Machine::OnHook(lua_State* L, lua_Debug* /*activation*/) {
 }
 
 int Machine::HandleMessage(lua_State* L) {
+  Of(L).traceback_ = TraceLua(L);
   std::string message;
   if (lua_type(L, 1) == LUA_TSTRING || luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL) {
     lua_settop(L, 1);
@@ -219,7 +239,32 @@ void Machine::LoadFile(lua_State* L, const std::filesystem::path& file) {
   lua_setupvalue(L, -2, 1);
 }
 
+void Machine::LoadTyped(const std::string& text, int line) {
+  if (first_file_.empty()) {
+    first_file_ = "stdin";
+    script_folder_ = ".";
+  }
+  const std::string numbered = std::string(static_cast<std::size_t>(line - 1), '\n') + text;
+  if (luaL_loadbufferx(L_, numbered.data(), numbered.size(), "=stdin", "t") != LUA_OK) {
+    std::string message = lua_tostring(L_, -1);
+    lua_pop(L_, 1);
+    throw InputError(message);
+  }
+  PushTypedEnvironment(L_);
+  lua_setupvalue(L_, -2, 1);
+}
+
+void Machine::PushTypedEnvironment(lua_State* L) {
+  if (typed_environment_ == LUA_NOREF) {
+    PushEnvironment(L);
+    typed_environment_ = luaL_ref(L, LUA_REGISTRYINDEX);
+  }
+  lua_rawgeti(L, LUA_REGISTRYINDEX, typed_environment_);
+}
+
 void Machine::Call(int arguments, int results) {
+  stop_reason_ = StopReason::kNone;
+  traceback_.clear();
   const int function = lua_gettop(L_) - arguments;
   lua_pushcfunction(L_, HandleMessage);
   lua_insert(L_, function);

@@ -6,6 +6,7 @@
 #include <lua5.4/lua.hpp>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "bindings/file_access.h"
 
@@ -45,10 +46,21 @@ class Machine {
   void LoadFile(lua_State* L, const std::filesystem::path& file);
   const std::filesystem::path& script_folder() const { return script_folder_; }
 
-  /// Calls the function that lies below its `arguments` on the stack of state().
+  /// Loads text from a prompt as a chunk named "stdin" and leaves it on the stack of state(). All
+  /// such text shares one environment. @param line  that its first line is, from 1.
+  /// @throws InputError for a syntax error; its text ends with "<eof>" when more lines may mend it.
+  void LoadTyped(const std::string& text, int line);
+  /// Pushes the environment that typed text shares.
+  void PushTypedEnvironment(lua_State* L);
+
+  /// Calls the function that lies below its `arguments` on the stack of state(). A call that failed
+  /// or was interrupted leaves the machine fit for the next one, with its whole time.
   /// @throws InputError with one line that has file:line where there is one; Interrupted;
   /// InternalError.
   void Call(int arguments, int results);
+
+  /// Where the last failure of Call was, innermost first: "file:line, in NAME".
+  const std::vector<std::string>& traceback() const { return traceback_; }
 
   /// Raises the Lua error that ends the script if it is out of time or was interrupted.
   void CheckTime(lua_State* L);
@@ -92,6 +104,8 @@ class Machine {
   std::string stop_message_;
   double start_ = 0.0, paused_since_ = 0.0, paused_ = 0.0;  // [s] of the thread's CPU
   int pauses_ = 0;
+  int typed_environment_ = LUA_NOREF;
+  std::vector<std::string> traceback_;
   std::filesystem::path script_folder_;
   std::string first_file_;
   std::string memory_where_;                       // of the last allocation that was refused

@@ -70,6 +70,20 @@ void PushFunctions(lua_State* L, const std::vector<FunctionInfo>& functions) {
   }
 }
 
+// What the metatable's __index, if it is `reader`, holds as upvalue number `upvalue`; else null.
+const void* FindIdentity(lua_State* L, int index, lua_CFunction reader, int upvalue) {
+  if (!lua_getmetatable(L, index)) return nullptr;
+  lua_pushliteral(L, "__index");
+  lua_rawget(L, -2);
+  const void* identity = nullptr;
+  if (lua_tocfunction(L, -1) == reader && lua_getupvalue(L, -1, upvalue) != nullptr) {
+    identity = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+  }
+  lua_pop(L, 2);
+  return identity;
+}
+
 void* Identity(const void* object) { return const_cast<void*>(object); }
 
 }  // namespace
@@ -139,6 +153,14 @@ void PushClassMetatable(lua_State* L, const ClassInfo& info, lua_CFunction destr
   }
   lua_pushvalue(L, -1);
   lua_rawsetp(L, LUA_REGISTRYINDEX, &info);
+}
+
+const Schema* FindSchema(lua_State* L, int index) {
+  return static_cast<const Schema*>(FindIdentity(L, index, ReadMissingField, 1));
+}
+
+const ClassInfo* FindClass(lua_State* L, int index) {
+  return static_cast<const ClassInfo*>(FindIdentity(L, index, ReadMember, 3));
 }
 
 void* TestClass(lua_State* L, int index, const ClassInfo& info) {

@@ -43,6 +43,10 @@ void PushFunction(lua_State* L, const FunctionInfo& function);
 /// Pushes the metatable of a class, made on first use.
 void PushClassMetatable(lua_State* L, const ClassInfo& info, lua_CFunction destroy);
 
+/// The schema of the record at `index`, the class of the object there; null when it is neither.
+const Schema* FindSchema(lua_State* L, int index);
+const ClassInfo* FindClass(lua_State* L, int index);
+
 /// The userdata at `index` if it is of the class, else null.
 void* TestClass(lua_State* L, int index, const ClassInfo& info);
 

@@ -160,14 +160,17 @@ ScriptContext& ScriptContext::Of(lua_State* L) {
   return *context;
 }
 
-void OpenPregrasp(Machine& machine, ScriptContext& context) {
-  lua_State* L = machine.state();
-  lua_pushlightuserdata(L, &context);
+ScriptMachine::ScriptMachine(const ScriptConfig& config)
+    : context_{config, {}}, machine_(config.machine) {
+  machine_.files().AllowProgramFiles(DataFolder());
+  machine_.files().SetOutput(config.output);
+  lua_State* L = machine_.state();
+  lua_pushlightuserdata(L, &context_);
   lua_rawsetp(L, LUA_REGISTRYINDEX, &kContextKey);
   const Api& api = GetApi();
   RecordWriter module(L, *api.module);
   module.Set("version", ProgramVersion());
-  module.Set("seed", static_cast<std::int64_t>(context.config.machine.seed));
+  module.Set("seed", static_cast<std::int64_t>(config.machine.seed));
   for (const FunctionInfo* function : api.functions) {
     PushFunction(L, *function);
     module.SetTop(function->name);
@@ -176,15 +179,28 @@ void OpenPregrasp(Machine& machine, ScriptContext& context) {
   SetModule(L, "pregrasp");
 }
 
+void ScriptMachine::FinishRecordings(const std::optional<std::string>& status) {
+  for (const auto& session : context_.recording) session->FinishRecording(status);
+}
+
+void LeaveNothingOnFailure(const ScriptConfig& config, const std::function<void()>& body) {
+  std::error_code ignored;
+  const bool had_output = fs::exists(config.output, ignored);
+  try {
+    body();
+  } catch (const std::exception&) {
+    // What was recorded is gone with its session; so is the folder that was made for it, if empty.
+    if (!had_output) fs::remove(config.output, ignored);
+    throw;
+  }
+}
+
 namespace {
 
 void RunInMachine(const fs::path& file, const std::vector<std::string>& arguments,
                   const ScriptConfig& config) {
-  ScriptContext context{config, {}};
-  Machine machine(config.machine);
-  machine.files().AllowProgramFiles(DataFolder());
-  machine.files().SetOutput(config.output);
-  OpenPregrasp(machine, context);
+  ScriptMachine script(config);
+  Machine& machine = script.machine();
   lua_State* L = machine.state();
   machine.LoadFile(L, file);
   const int count = static_cast<int>(arguments.size());
@@ -197,25 +213,17 @@ void RunInMachine(const fs::path& file, const std::vector<std::string>& argument
   try {
     machine.Call(count, 0);
   } catch (const Interrupted&) {
-    for (const auto& session : context.recording) session->FinishRecording("interrupted");
+    script.FinishRecordings("interrupted");
     throw;
   }
-  for (const auto& session : context.recording) session->FinishRecording();
+  script.FinishRecordings(std::nullopt);
 }
 
 }  // namespace
 
 void RunScript(const fs::path& file, const std::vector<std::string>& arguments,
                const ScriptConfig& config) {
-  std::error_code ignored;
-  const bool had_output = fs::exists(config.output, ignored);
-  try {
-    RunInMachine(file, arguments, config);
-  } catch (const std::exception&) {
-    // What was recorded is gone with its session; so is the folder that was made for it, if empty.
-    if (!had_output) fs::remove(config.output, ignored);
-    throw;
-  }
+  LeaveNothingOnFailure(config, [&] { RunInMachine(file, arguments, config); });
 }
 
 }  // namespace pregrasp

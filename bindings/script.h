@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,8 +43,24 @@ struct ScriptContext {
   static ScriptContext& Of(lua_State* L);
 };
 
-/// Makes `require "pregrasp"` work.
-void OpenPregrasp(Machine& machine, ScriptContext& context);
+/// A machine in which `require "pregrasp"` works, allowed the files that a script may touch.
+class ScriptMachine {
+ public:
+  explicit ScriptMachine(const ScriptConfig& config);
+
+  Machine& machine() { return machine_; }
+
+  /// Ends the recordings that are open. @param status  as Session::FinishRecording.
+  void FinishRecordings(const std::optional<std::string>& status);
+
+ private:
+  ScriptContext context_;  // outlives the machine
+  Machine machine_;
+};
+
+/// Runs `body`, which writes below config.output: when it throws and nothing was written, the
+/// folder is gone again too.
+void LeaveNothingOnFailure(const ScriptConfig& config, const std::function<void()>& body);
 
 /// All that is registered, by the names that scripts see; lua/meta is held against it.
 struct Api {

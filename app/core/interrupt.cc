@@ -6,10 +6,11 @@
 namespace pregrasp {
 namespace {
 
-std::atomic<bool> interrupt_requested{false};
+std::atomic<bool> interrupt_requested{false}, termination_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "the signal handler needs a lock-free flag");
 
 void HandleSignal(int signal) {
+  if (signal == SIGTERM) termination_requested = true;
   if (interrupt_requested.exchange(true)) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
@@ -29,6 +30,8 @@ void InstallInterruptHandler() {
 }
 
 bool InterruptRequested() { return interrupt_requested.load(std::memory_order_relaxed); }
+
+bool TerminationRequested() { return termination_requested.load(std::memory_order_relaxed); }
 
 void RequestInterrupt() { interrupt_requested = true; }
 

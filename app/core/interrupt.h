@@ -17,6 +17,9 @@ void InstallInterruptHandler();
 
 bool InterruptRequested();
 
+/// Whether one of them was SIGTERM: even a prompt that survives Ctrl-C then ends.
+bool TerminationRequested();
+
 /// Raises the flag as Ctrl-C does, or takes it back (for a prompt that goes on, and for tests).
 void RequestInterrupt();
 void ClearInterrupt();

@@ -35,6 +35,7 @@ const std::vector<std::pair<std::regex, std::set<std::string>>> kOwners = {
     {std::regex("mrpt/.*"), {"app/recording"}},
     {std::regex("GL/.*"), {"render"}},
     {std::regex("lua.*|lauxlib.*"), {"bindings"}},
+    {std::regex("histedit.*"), {"bindings"}},
     {std::regex("openssl/.*"), {"app/core"}},
 };
 

@@ -25,19 +25,21 @@ inline std::string ReadText(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// Starts the built pregrasp in the folder `directory`; what it prints goes to the files out and
-/// err in `captured`.
+/// Starts the built pregrasp in the folder `directory`; it reads `input`, and what it prints goes
+/// to the files out and err in `captured`.
 inline pid_t StartProgram(const std::vector<std::string>& arguments,
                           const std::filesystem::path& directory,
-                          const std::filesystem::path& captured) {
+                          const std::filesystem::path& captured, const std::string& input = "") {
   std::filesystem::create_directories(captured);
+  std::ofstream(captured / "in") << input;
   std::vector<char*> argv{const_cast<char*>(PREGRASP_PROGRAM)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const pid_t child = fork();
   if (child != 0) return child;
   const int flags = O_WRONLY | O_CREAT | O_TRUNC;
-  const bool ready = dup2(open((captured / "out").c_str(), flags, 0600), 1) == 1 &&
+  const bool ready = dup2(open((captured / "in").c_str(), O_RDONLY), 0) == 0 &&
+                     dup2(open((captured / "out").c_str(), flags, 0600), 1) == 1 &&
                      dup2(open((captured / "err").c_str(), flags, 0600), 2) == 2 &&
                      chdir(directory.c_str()) == 0;
   if (ready) execv(argv[0], argv.data());
@@ -56,10 +58,12 @@ inline ProgramResult AwaitProgram(pid_t child, const std::filesystem::path& capt
 
 /// Runs it to its end.
 inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
-                                const std::filesystem::path& directory) {
+                                const std::filesystem::path& directory,
+                                const std::string& input = "") {
   std::string name = (std::filesystem::temp_directory_path() / "pregrasp_output_XXXXXX").string();
   const std::filesystem::path captured = mkdtemp(name.data());
-  const ProgramResult result = AwaitProgram(StartProgram(arguments, directory, captured), captured);
+  const ProgramResult result =
+      AwaitProgram(StartProgram(arguments, directory, captured, input), captured);
   std::filesystem::remove_all(captured);
   return result;
 }

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace pregrasp {
+
+/// What lua/meta/pregrasp.lua says of a name, for help() and completion.
+struct ManualEntry {
+  struct Part {  ///< a field of a table or class, or a parameter of a function
+    std::string name, type, text;
+    bool optional = false;
+  };
+  std::string name;       ///< "pregrasp.open", "Session:settle", "Body"
+  std::string signature;  ///< with parameters; a function's only
+  std::string text;
+  std::vector<Part> parts;
+  std::string result;  ///< what a function returns, with its type first
+
+  bool is_function() const { return !signature.empty(); }
+};
+
+/// The annotations as data. Their form is held by a test.
+class Manual {
+ public:
+  /// That of the program, read when first asked for; empty if the file is gone.
+  static const Manual& Get();
+
+  explicit Manual(const std::string& text);
+
+  const std::map<std::string, ManualEntry>& entries() const { return entries_; }
+  const ManualEntry* Find(const std::string& name) const;
+
+  /// The functions of a class or module, in the file's order.
+  std::vector<const ManualEntry*> FunctionsOf(const std::string& owner) const;
+
+  /// The table of options that a function takes, or null.
+  const ManualEntry* OptionsOf(const ManualEntry& function) const;
+
+  /// Help on `name` as a person reads it: a class with fields and methods, or a function with its
+  /// options. Empty if there is no such name.
+  std::string Explain(const std::string& name) const;
+
+  /// Full names that `word` may mean: itself, or members called so.
+  std::vector<std::string> Match(const std::string& word) const;
+
+ private:
+  std::map<std::string, ManualEntry> entries_;
+  std::vector<std::string> order_;
+};
+
+}  // namespace pregrasp
