@@ -7,6 +7,7 @@
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/grasp/grasp_search.h"
 #include "app/recording/checked_file.h"
 #include "app/recording/manifest.h"
 #include "tests/networks/random_network.h"
@@ -122,6 +123,46 @@ TEST_F(RunTest, AnInterruptLeavesAValidShorterRun) {
   EXPECT_EQ(LoadRun(folder_ / "run").summary["status"], "interrupted");
   EXPECT_FALSE(VerifyManifest(folder_ / "run").has_value());
   EXPECT_EQ(Ids("run").back(), "path.1.mppi.2");
+}
+
+// A finger that presses without moving anything is a plan that holds; but the ruler is then where
+// no hand can grasp it, so no contacts at all make it a success.
+TEST_F(RunTest, AMotionlessPlanFails) {
+  Session session(MakeRulerScene(), {});
+  config_.grasp_samples = 20;
+  const Planner planner(session.shared_world(), session.start(), config_, 1, session.pool(),
+                        folder_);
+  ContactGraph graph = planner.BuildGraph(config_.mesh, config_.graph);
+  int top = 0;  // a triangle of the ruler's top face
+  const auto height = [&](int t) {
+    double z = 0.0;
+    for (int corner = 0; corner < 3; ++corner) z += graph.mesh().V(graph.mesh().F(t, corner), 2);
+    return z;
+  };
+  for (int t = 1; t < graph.num_triangles(); ++t) {
+    if (height(t) > height(top)) top = t;
+  }
+  ContactPath path;
+  path.rank = 1;
+  path.nodes = {top * graph.num_triangles() + top};
+  const Mppi mppi = planner.MakeMppi(graph, path, config_.mppi);
+  MppiState state = mppi.Start();
+  state.best_action.assign(state.mean.size(), 0.0);
+  state.best_action[state.best_action.size() / 2] = 1.0;  // the index finger on, its targets still
+  const Certificate certificate = planner.Certify(mppi, state);
+  ASSERT_TRUE(certificate.certified);
+  const RigidTransform X_WO = certificate.full.end.bodies[0].X_WB();
+  EXPECT_LT((X_WO.translation() - session.start().bodies[0].p_WB).norm(), 1e-3);
+  const ReleaseResult release = planner.Release(certificate);
+  EXPECT_TRUE(release.stays);
+  for (int sample = 0; sample < config_.grasp_samples; ++sample) {
+    EXPECT_FALSE(planner.CompleteGrasp(certificate, release, 1, sample).feasible()) << sample;
+  }
+  GraspSearchConfig search;
+  search.max_sets = 20000;
+  EXPECT_TRUE(SearchGrasps(planner.grasp_world(), search, {},
+                           planner.world().GetPoses(certificate.full.end), 1, session.pool())
+                  .found.empty());
 }
 
 TEST_F(RunTest, MissingWeightsAreBadInputThatNamesTheFile) {
