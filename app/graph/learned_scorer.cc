@@ -96,9 +96,9 @@ std::vector<double> LearnedScorer::Score(std::span<const ScoredState> states) co
   return {scores.data(), scores.data() + scores.size()};
 }
 
-std::unique_ptr<PlacementScorer> LearnedScorer::InContext() const {
+std::unique_ptr<PlacementScorer> LearnedScorer::At(const std::vector<RigidTransform>& X_WB) const {
   return std::make_unique<FixedState>(
-      *this, MakeObjectState(cloud_, X_WB_start_, environment_, gravity_W_), X_WB_start_);
+      *this, MakeObjectState(cloud_, X_WB, environment_, gravity_W_), X_WB);
 }
 
 std::unique_ptr<PlacementScorer> LearnedScorer::Free() const {

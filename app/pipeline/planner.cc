@@ -28,16 +28,6 @@ std::vector<GraspContact> PressingContacts(const WorldState& state) {
   return pressing;
 }
 
-PlanningContacts ToPlanningContacts(const std::vector<GraspContact>& contacts,
-                                    const std::vector<RigidTransform>& X_WB,
-                                    const EnvironmentDistance& environment) {
-  Placement placement;
-  for (const GraspContact& contact : contacts) {
-    placement.fingers.at(static_cast<int>(contact.finger)) = {true, contact.p_OC, contact.nhat_O};
-  }
-  return MakePlanningContacts(placement, &X_WB, environment);
-}
-
 }  // namespace
 
 void PlannerConfig::Validate() const {
@@ -55,6 +45,7 @@ void PlannerConfig::Validate() const {
   mesh.Validate();
   graph.Validate();
   mppi.Validate();
+  placements.Validate();
   completion.Validate();
   lift.Validate();
   motion.Validate();
@@ -118,14 +109,10 @@ Certificate Planner::Certify(const Mppi& mppi, const MppiState& state) const {
                      mppi.config().timing, config_.certify);
 }
 
-ReleaseResult Planner::Release(const Certificate& certificate) const {
+ReleaseResult Planner::Release(const ContactGraph& graph, const Certificate& certificate) const {
   ReleaseResult result;
   WorldState state = certificate.full.end;
   result.pressing = PressingContacts(state);
-  for (auto row = certificate.trace.rbegin();
-       row != certificate.trace.rend() && result.conditions.empty(); ++row) {
-    result.conditions = PressingContacts(row->state);
-  }
   for (int f = 0; f < kNumFingers; ++f) world_->LiftFinger(state, static_cast<Finger>(f));
   const RigidTransform X_WO = state.bodies.front().X_WB();
   const int steps = static_cast<int>(std::lround(kReleaseSeconds / world_->config().dt));
@@ -134,6 +121,15 @@ ReleaseResult Planner::Release(const Certificate& certificate) const {
   result.shift = (X_WO_end.translation() - X_WO.translation()).norm();
   result.turn_deg = RadToDeg(RotationAngle(X_WO.linear(), X_WO_end.linear()));
   result.stays = result.shift < kReleaseShift && result.turn_deg < kReleaseTurnDeg;
+
+  Placement fixed;
+  for (const GraspContact& contact : result.pressing) {
+    if (result.stays) break;
+    fixed.fingers[static_cast<int>(contact.finger)] = {true, contact.p_OC, contact.nhat_O};
+  }
+  const auto scorer = scorer_->At(world_->GetPoses(certificate.full.end));
+  result.conditions = FindPlacements(graph.mesh(), *shape_, *scorer, fixed, config_.grasp_samples,
+                                     config_.placements, Rng(seed_, RngStream::kGrasp));
   return result;
 }
 
@@ -142,7 +138,9 @@ CompletedGrasp Planner::CompleteGrasp(const Certificate& certificate, const Rele
   const std::vector<RigidTransform> X_WB = world_->GetPoses(certificate.full.end);
   const ObjectState seen = MakeObjectState(scorer_->cloud(), X_WB, *environment_, scene().gravity);
   const EncodedState encoded = generator_->Encode(*generator_structure_, seen);
-  const PlanningContacts conditions = ToPlanningContacts(release.conditions, X_WB, *environment_);
+  PREGRASP_CHECK(!release.conditions.empty());
+  const PlanningContacts conditions = MakePlanningContacts(
+      release.conditions[sample % release.conditions.size()], &X_WB, *environment_);
   const Rng latent(seed_, RngStream::kGrasp, static_cast<std::uint32_t>(path_rank),
                    static_cast<std::uint32_t>(2 * sample));
   const GraspPoints points =

@@ -7,6 +7,7 @@
 
 #include "app/geometry/contact_mesh.h"
 #include "app/graph/learned_scorer.h"
+#include "app/graph/placement_search.h"
 #include "app/grasp/grasp_completion.h"
 #include "app/grasp/lift.h"
 #include "app/motion/hand_motion.h"
@@ -23,6 +24,7 @@ struct PlannerConfig {
   int stages = 2;  ///< N, nodes in a path
   MppiConfig mppi;
   CertifyConfig certify;
+  PlacementSearchConfig placements;
   CompletionConfig completion;
   int grasp_samples = 20;  ///< latent samples on a certified trajectory
   LiftConfig lift;
@@ -39,8 +41,10 @@ struct ReleaseResult {
   /// The contacts that press at the end of the trajectory. If the object does not stay without
   /// them, every grasp keeps them where they are.
   std::vector<GraspContact> pressing;
-  /// What the grasp generator is asked to complete: `pressing`, or where fingers pressed last.
-  std::vector<GraspContact> conditions;
+  /// What the grasp generator is asked to complete, one for each sample in turn: the placements
+  /// with the best learned score where the object is now. If the object does not stay, all of them
+  /// hold `pressing`. Empty if there is no place for a fingertip.
+  std::vector<Placement> conditions;
 };
 
 /// The stages of one scene bound together: builds what they share once, and hands each stage its
@@ -76,10 +80,12 @@ class Planner {
   /// Re-simulates the best plan through Simbody, and again at half the step.
   Certificate Certify(const Mppi& mppi, const MppiState& state) const;
 
-  ReleaseResult Release(const Certificate& certificate) const;
+  /// @param graph  whose mesh says where fingers may touch.
+  ReleaseResult Release(const ContactGraph& graph, const Certificate& certificate) const;
 
   /// The generated grasp number `sample` (from 0) on a certified trajectory, tested. Safe to call
   /// from several threads.
+  /// @param release    with at least one condition.
   /// @param path_rank  keys the latent samples.
   CompletedGrasp CompleteGrasp(const Certificate& certificate, const ReleaseResult& release,
                                int path_rank, int sample) const;

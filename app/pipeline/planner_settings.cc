@@ -44,6 +44,9 @@ void VisitFields(Config& config, Visitor&& visit) {
   visit("certify.max_hold_shift", config.certify.max_hold_shift);
   visit("certify.max_hold_turn_deg", config.certify.max_hold_turn_deg);
   visit("grasps.samples", config.grasp_samples);
+  visit("grasps.points", config.placements.points);
+  visit("grasps.pairs", config.placements.pairs);
+  visit("grasps.spacing", config.placements.spacing);
   visit("grasps.f_min", config.completion.grasp.f_min);
   visit("grasps.may_drop", config.completion.grasp.may_drop);
   visit("grasps.max_refinement", config.completion.max_refinement);

@@ -88,7 +88,7 @@ class Runner {
     Optimize(path, index, attempt);
     record_.Time("trajectory", [&] {
       attempt.certificate = planner_.Certify(*attempt.mppi, attempt.state);
-      attempt.release = planner_.Release(attempt.certificate);
+      attempt.release = planner_.Release(*graph_, attempt.certificate);
     });
     record_.AddCertificate(*attempt.mppi, attempt.certificate, attempt.release);
     if (!attempt.certificate.certified) return attempt;
@@ -114,6 +114,7 @@ class Runner {
   }
 
   void CompleteGrasps(int index, PathAttempt& attempt) {
+    if (attempt.release.conditions.empty()) return;
     const int count = planner_.config().grasp_samples;
     Report(fmt::format("path {} of {}, grasps", index + 1, config_.paths), 0, count);
     attempt.grasps.resize(count);
@@ -191,6 +192,9 @@ class Runner {
         reasons += (reasons.empty() ? "" : "; ") + std::string(CertifyReasonText(reason));
       }
       return head + "not certified: " + reasons;
+    }
+    if (attempt.grasps.empty()) {
+      return head + "certified, but no fingertip can be anywhere on the object";
     }
     if (attempt.feasible.empty()) {
       return head + "certified, but no grasp is feasible, most often because of " +

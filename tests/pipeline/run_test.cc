@@ -153,7 +153,7 @@ TEST_F(RunTest, AMotionlessPlanFails) {
   ASSERT_TRUE(certificate.certified);
   const RigidTransform X_WO = certificate.full.end.bodies[0].X_WB();
   EXPECT_LT((X_WO.translation() - session.start().bodies[0].p_WB).norm(), 1e-3);
-  const ReleaseResult release = planner.Release(certificate);
+  const ReleaseResult release = planner.Release(graph, certificate);
   EXPECT_TRUE(release.stays);
   for (int sample = 0; sample < config_.grasp_samples; ++sample) {
     EXPECT_FALSE(planner.CompleteGrasp(certificate, release, 1, sample).feasible()) << sample;
