@@ -170,15 +170,9 @@ TriangleMesh KeepLargest(const TriangleMesh& mesh, int triangles) {
   std::sort(areas.begin(), areas.end());
   std::vector<bool> kept(count, false);
   for (int k = 0; k < keep; ++k) kept[areas[k].second] = true;
-  TriangleMesh result;
-  result.V = mesh.V;
-  result.F.resize(mesh.F.rows(), 3);
-  int rows = 0;
-  for (int f = 0; f < mesh.F.rows(); ++f) {
-    if (kept[label[f]]) result.F.row(rows++) = mesh.F.row(f);
-  }
-  result.F.conservativeResize(rows, 3);
-  return WeldVertices(result, 0.0);
+  std::vector<bool> keep_face(label.size());
+  std::transform(label.begin(), label.end(), keep_face.begin(), [&](int c) { return kept[c]; });
+  return TakeFaces(mesh, keep_face);
 }
 
 // The outer surface of a union as one mesh, from its signed distance on a grid. The grid rounds

@@ -10,6 +10,7 @@
 #include "app/geometry/mass_properties.h"
 #include "app/geometry/mesh_topology.h"
 #include "app/geometry/read_mesh.h"
+#include "app/geometry/reconstruct.h"
 
 namespace pregrasp {
 namespace {
@@ -58,16 +59,10 @@ void RequireClosed(const TriangleMesh& mesh, const std::string& name, const std:
   }
 }
 
-// The faces of component `c` as a mesh; it keeps all vertices.
-TriangleMesh ExtractComponent(const TriangleMesh& mesh, const std::vector<int>& label, int c) {
-  TriangleMesh part;
-  part.V = mesh.V;
-  part.F.resize(std::count(label.begin(), label.end(), c), 3);
-  int next = 0;
-  for (int f = 0; f < mesh.F.rows(); ++f) {
-    if (label[f] == c) part.F.row(next++) = mesh.F.row(f);
-  }
-  return part;
+TriangleMesh TakeComponent(const TriangleMesh& mesh, const std::vector<int>& label, int c) {
+  std::vector<bool> keep(label.size());
+  std::transform(label.begin(), label.end(), keep.begin(), [c](int of) { return of == c; });
+  return TakeFaces(mesh, keep);
 }
 
 // Turns each component outward, or inward when an odd number of others lies around it.
@@ -78,16 +73,12 @@ void OrientOutward(TriangleMesh& mesh) {
   std::vector<AlignedBox> bounds;
   parts.reserve(count);
   for (int c = 0; c < count; ++c) {
-    parts.push_back(ExtractComponent(mesh, label, c));
-    AlignedBox box;
-    for (int f = 0; f < parts[c].F.rows(); ++f) {
-      for (int i = 0; i < 3; ++i) box.extend(Vector3(mesh.V.row(parts[c].F(f, i))));
-    }
-    bounds.push_back(box);
+    parts.push_back(TakeComponent(mesh, label, c));
+    bounds.push_back(BoundsOfPoints(parts[c].V));
   }
   std::vector<bool> turn(count);
   for (int c = 0; c < count; ++c) {
-    const Vector3 p = mesh.V.row(parts[c].F(0, 0));
+    const Vector3 p = parts[c].V.row(0);
     int around = 0;
     for (int d = 0; d < count; ++d) {
       if (d == c || !bounds[d].contains(bounds[c])) continue;
@@ -123,7 +114,15 @@ struct Loader {
   }
   void operator()(Cloud& cloud) const {
     const std::string name = '"' + cloud.file + '"';
-    throw InputError(where, field, "a mesh: clouds cannot be read yet", name);
+    const PointFile read = Read(name, [&] { return ReadPoints(directory / cloud.file); });
+    cloud.points = cloud.scale * read.P;
+    RequireFinitePoints(cloud.points, name, where, field);
+    RequireSaneSize(cloud.points, name, where, field);
+    try {
+      cloud.mesh = ReconstructSurface(cloud.points, read.N).mesh;
+    } catch (const UnclosedCloud& error) {
+      throw InputError(where, field, error.expected, name + ", " + error.got);
+    }
   }
   void operator()(Union& whole) const {
     for (std::size_t i = 0; i < whole.parts.size(); ++i) {

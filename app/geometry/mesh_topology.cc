@@ -107,29 +107,38 @@ MeshDefects FindDefects(const TriangleMesh& mesh) {
 
 TriangleMesh WeldVertices(const TriangleMesh& mesh, double tolerance) {
   const std::vector<int> representative = FindRepresentatives(mesh.V, tolerance);
-  std::vector<Eigen::RowVector3i> faces;
-  std::vector<int> new_index(mesh.V.rows(), -1);
-  std::vector<int> kept;
+  TriangleMesh welded = mesh;
+  std::vector<bool> keep(mesh.F.rows());
   for (int f = 0; f < mesh.F.rows(); ++f) {
-    Eigen::RowVector3i face;
-    for (int i = 0; i < 3; ++i) face[i] = representative[mesh.F(f, i)];
-    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) continue;
-    faces.push_back(face);
-    for (int i = 0; i < 3; ++i) new_index[face[i]] = 0;
+    for (int i = 0; i < 3; ++i) welded.F(f, i) = representative[mesh.F(f, i)];
+    keep[f] = welded.F(f, 0) != welded.F(f, 1) && welded.F(f, 1) != welded.F(f, 2) &&
+              welded.F(f, 2) != welded.F(f, 0);
   }
+  return TakeFaces(welded, keep);
+}
+
+TriangleMesh TakeFaces(const TriangleMesh& mesh, const std::vector<bool>& keep) {
+  TriangleMesh taken;
+  taken.F.resize(std::count(keep.begin(), keep.end(), true), 3);
+  std::vector<int> new_index(mesh.V.rows(), -1);
+  int row = 0;
+  for (int f = 0; f < mesh.F.rows(); ++f) {
+    if (!keep[f]) continue;
+    taken.F.row(row++) = mesh.F.row(f);
+    for (int i = 0; i < 3; ++i) new_index[mesh.F(f, i)] = 0;
+  }
+  int count = 0;
   for (int v = 0; v < mesh.V.rows(); ++v) {
-    if (new_index[v] < 0) continue;
-    new_index[v] = static_cast<int>(kept.size());
-    kept.push_back(v);
+    if (new_index[v] == 0) new_index[v] = count++;
   }
-  TriangleMesh welded;
-  welded.V.resize(static_cast<int>(kept.size()), 3);
-  for (std::size_t v = 0; v < kept.size(); ++v) welded.V.row(v) = mesh.V.row(kept[v]);
-  welded.F.resize(static_cast<int>(faces.size()), 3);
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (int i = 0; i < 3; ++i) welded.F(f, i) = new_index[faces[f][i]];
+  taken.V.resize(count, 3);
+  for (int v = 0; v < mesh.V.rows(); ++v) {
+    if (new_index[v] >= 0) taken.V.row(new_index[v]) = mesh.V.row(v);
   }
-  return welded;
+  for (int f = 0; f < taken.F.rows(); ++f) {
+    for (int i = 0; i < 3; ++i) taken.F(f, i) = new_index[taken.F(f, i)];
+  }
+  return taken;
 }
 
 std::vector<int> LabelComponents(const TriangleMesh& mesh) {

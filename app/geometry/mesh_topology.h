@@ -25,6 +25,9 @@ MeshDefects FindDefects(const TriangleMesh& mesh);
 /// stays, 0 merges equal ones), and drops faces that lose a corner and vertices without a face.
 TriangleMesh WeldVertices(const TriangleMesh& mesh, double tolerance);
 
+/// The faces that `keep` is true for, with the vertices that they use.
+TriangleMesh TakeFaces(const TriangleMesh& mesh, const std::vector<bool>& keep);
+
 /// Component (through shared edges) of each face, numbered in the order of their first face.
 std::vector<int> LabelComponents(const TriangleMesh& mesh);
 

@@ -139,4 +139,17 @@ TriangleMesh ReadTriangles(const fs::path& file) {
   return result;
 }
 
+PointFile ReadPoints(const fs::path& file) {
+  RequireReadable(file);
+  if (Extension(file) != ".ply") throw UnreadableFile("a cloud in a .ply file", "");
+  PlyContent content = ReadPly(file);
+  if (content.V.rows() == 0) throw UnreadableFile("a cloud with points", "which has none");
+  constexpr int kMaxPoints = 2'000'000;
+  if (content.V.rows() > kMaxPoints) {
+    throw UnreadableFile(fmt::format("at most {} points", kMaxPoints),
+                         fmt::format("which has {}", content.V.rows()));
+  }
+  return {std::move(content.V), std::move(content.N)};
+}
+
 }  // namespace pregrasp

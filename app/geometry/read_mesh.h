@@ -22,4 +22,14 @@ struct UnreadableFile : std::runtime_error {
 /// @throws UnreadableFile
 TriangleMesh ReadTriangles(const std::filesystem::path& file);
 
+/// Points on a surface, as they are in a file.
+struct PointFile {
+  MatrixX3 P;
+  MatrixX3 N;  ///< the points' normals; no rows where the file has none
+};
+
+/// The vertices of a PLY file, with or without faces. At most 256 MB and 2 million points.
+/// @throws UnreadableFile
+PointFile ReadPoints(const std::filesystem::path& file);
+
 }  // namespace pregrasp

@@ -22,8 +22,8 @@ TriangleMesh SplitLongEdges(const TriangleMesh& mesh, double max_edge);
 /// planes leave a direction free, it goes to the faces' middle. Edges go in the order of the mean
 /// square distance to those planes, plus a millionth of that to the faces' places: one
 /// millimetre off the surface counts like a metre along it, which makes triangles even where the
-/// surface is flat and changes nothing else. Keeps the surface closed and two-manifold (link condition) and turns no face
-/// over. Deterministic.
+/// surface is flat and changes nothing else. Keeps the surface closed and two-manifold (link
+/// condition) and turns no face over. Deterministic.
 /// @param mesh    closed and two-manifold; `planes` of its faces, or empty for the faces' own.
 /// @param target  number of faces wanted, even. The result has more when its handles or flat folds
 ///                allow no fewer.

@@ -11,6 +11,7 @@
 
 #include "app/core/error.h"
 #include "app/geometry/mass_properties.h"
+#include "app/geometry/point_cloud.h"
 #include "app/geometry/signed_distance.h"
 #include "tests/geometry/test_shapes.h"
 #include "tests/geometry/write_mesh.h"
@@ -219,6 +220,46 @@ TEST_F(LoadShapeTest, RefusesAFileThatEndsEarlyAtEveryLength) {
 TEST_F(LoadShapeTest, AMeshInMillimetresIsToldToBeScaled) {
   Write("mm.obj", testing::ObjText(Tessellate(Box{Vector3(120, 80, 60)})));
   EXPECT_NE(Refusal("mm.obj").find("scale"), std::string::npos);
+}
+
+TEST_F(LoadShapeTest, ReadsACloudInAnyEncodingAndScalesIt) {
+  TriangleMesh points;
+  points.V = 1000.0 * SamplePointCloud(Sphere{0.04}, 1000, Rng(1)).P;
+  points.F.resize(0, 3);
+  for (const std::string encoding : {"ascii", "binary_little_endian"}) {
+    Write("ball.ply", testing::PlyText(points, encoding));
+    Cloud cloud;
+    cloud.file = "ball.ply";
+    cloud.scale = 0.001;
+    Shape shape = cloud;
+    LoadShape(shape, directory_, "a.lua:7", "object.shape");
+    EXPECT_NEAR(CalcVolume(shape) / CalcVolume(Sphere{0.04}), 1.0, 0.05) << encoding;
+    EXPECT_EQ(std::get<Cloud>(shape).points.rows(), 1000);
+  }
+}
+
+TEST_F(LoadShapeTest, RefusesACloudThatIsNone) {
+  const auto refusal = [&](const std::string& name) -> std::string {
+    Cloud cloud;
+    cloud.file = name;
+    Shape shape = cloud;
+    try {
+      LoadShape(shape, directory_, "a.lua:7", "object.shape");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  TriangleMesh few = Tessellate(Box{Vector3(1, 1, 1)});
+  few.F.resize(0, 3);
+  Write("few.ply", testing::PlyText(few, "ascii"));
+  Write("cut.ply", testing::PlyText(few, "ascii").substr(0, 150));
+  Write("a.obj", testing::ObjText(Tessellate(Box{Vector3(1, 1, 1)})));
+  EXPECT_EQ(refusal("few.ply"),
+            "a.lua:7: object.shape: expected at least 100 points, got \"few.ply\", which has 8");
+  EXPECT_EQ(refusal("cut.ply").rfind("a.lua:7: object.shape: expected a PLY file", 0), 0U);
+  EXPECT_NE(refusal("a.obj").find(".ply"), std::string::npos);
+  EXPECT_NE(refusal("gone.ply").find("does not exist"), std::string::npos);
 }
 
 TEST_F(LoadShapeTest, NamesThePartOfAUnion) {

@@ -1,0 +1,284 @@
+#include "app/geometry/reconstruct.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "app/geometry/cloud_flood.h"
+#include "app/geometry/cloud_planes.h"
+#include "app/geometry/hull.h"
+#include "app/geometry/iso_surface.h"
+#include "app/geometry/mesh_distance.h"
+#include "app/geometry/mesh_topology.h"
+#include "app/geometry/point_index.h"
+#include "app/geometry/simplify.h"
+#include "app/geometry/surface_height.h"
+
+namespace pregrasp {
+namespace {
+
+constexpr int kMinPoints = 100;
+constexpr int kMaxPoints = 15'000;
+constexpr int kMaxTriangles = 8'000;
+constexpr int kMaxHandles = 10;           // more are a thin wall that broke
+constexpr int kMaxCells = 16'000;         // that the surface crosses, about
+constexpr double kCellPerSpacing = 0.75;  // of the grid that the surface is taken from
+
+// Every point once, at most kMaxPoints of them, evenly over the file's order.
+std::vector<int> ChoosePoints(const MatrixX3& points) {
+  std::vector<int> order(points.rows());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int i) { return std::make_tuple(points(i, 0), points(i, 1), points(i, 2)); };
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return std::make_pair(key(i), i) < std::make_pair(key(j), j); });
+  order.erase(
+      std::unique(order.begin(), order.end(), [&](int i, int j) { return key(i) == key(j); }),
+      order.end());
+  std::sort(order.begin(), order.end());
+  if (order.size() <= kMaxPoints) return order;
+  std::vector<int> chosen;
+  for (std::size_t k = 0; k < kMaxPoints; ++k)
+    chosen.push_back(order[k * order.size() / kMaxPoints]);
+  return chosen;
+}
+
+// How thick the cloud is where it is thinnest [m], along a principal axis.
+double CalcThickness(const MatrixX3& P) {
+  const MatrixX3 D = P.rowwise() - P.colwise().mean();
+  const Matrix3 spread = D.transpose() * D;
+  const VectorX across = D * Eigen::SelfAdjointEigenSolver<Matrix3>(spread).eigenvectors().col(0);
+  return across.maxCoeff() - across.minCoeff();
+}
+
+// Turns nodes over whose neighbours, but for two, are all on the other side: specks and spikes,
+// which would give handles. The corner of a wall one node thick keeps its three.
+void DropSpecks(ScalarGrid& grid) {
+  constexpr int kMostOfThem = 24;  // of 26
+  constexpr int kRounds = 4;
+  const std::array<std::size_t, 3> step = StepsOf(grid);
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<float> before = grid.values;
+    VisitInner(grid, [&](int x, int y, int z) {
+      const std::size_t corner = grid.Index(x - 1, y - 1, z - 1), at = grid.Index(x, y, z);
+      int across = 0;
+      double sum = 0.0;
+      for (int k = 0; k < 27; ++k) {
+        const float value =
+            before[corner + k % 3 * step[0] + k / 3 % 3 * step[1] + k / 9 * step[2]];
+        if ((value < 0.0F) == (before[at] < 0.0F)) continue;
+        ++across;
+        sum += value;
+      }
+      if (across >= kMostOfThem) grid.values[at] = static_cast<float>(sum / across);
+    });
+  }
+}
+
+// Averages each node with its neighbours, 1 2 1 along each axis, after cutting values off at
+// `limit`. Takes handles away that noise made, and thins walls.
+void Smooth(ScalarGrid& grid, double limit) {
+  const auto cut = static_cast<float>(limit);
+  for (float& value : grid.values) value = std::clamp(value, -cut, cut);
+  for (const std::size_t step : StepsOf(grid)) {
+    const std::vector<float> before = grid.values;
+    VisitInner(grid, [&](int x, int y, int z) {
+      const std::size_t at = grid.Index(x, y, z);
+      grid.values[at] = 0.25F * (before[at - step] + 2.0F * before[at] + before[at + step]);
+    });
+  }
+}
+
+// Fills pockets that cannot be reached from outside.
+void FillPockets(ScalarGrid& grid) {
+  GridMarks marks(grid.values.size());
+  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = grid.values[i] < 0.0F ? 1 : 0;
+  FloodFromCorner(grid, marks);
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (marks[i] == 0) grid.values[i] = static_cast<float>(-1e-3 * grid.cell);
+  }
+}
+
+// The implicit surface on a grid: heights over the planes near the points, beyond them outside
+// where the flood reaches and inside elsewhere. Planes say little far from their points, so that
+// both sides are spread to within `distance` of these.
+ScalarGrid Evaluate(const SampledCloud& cloud, const CloudFlood& flood, double distance) {
+  const double area = cloud.spacing * cloud.spacing * static_cast<double>(cloud.P.rows());
+  const double cell = std::max(kCellPerSpacing * cloud.spacing, std::sqrt(area / kMaxCells));
+  const double band = 1.15 * flood.radius() + cell;
+  constexpr std::uint8_t kInside = 0, kNear = 1, kOutside = 2;
+  ScalarGrid grid = GridAround(cloud, cell, 1.5 * band);
+  GridMarks marks(grid.values.size(), kInside);
+  for (int i = 0; i < cloud.P.rows(); ++i) {
+    VisitBall(grid, cloud.P.row(i), band,
+              [&](int x, int y, int z) { marks[grid.Index(x, y, z)] = kNear; });
+  }
+  const auto visit_all = [&](auto&& visit) {
+    for (int z = 0; z < grid.count[2]; ++z) {
+      for (int y = 0; y < grid.count[1]; ++y) {
+        for (int x = 0; x < grid.count[0]; ++x) visit(grid.Index(x, y, z), grid.Node(x, y, z));
+      }
+    }
+  };
+  visit_all([&](std::size_t at, const Vector3& p) {
+    if (flood.Reaches(p)) marks[at] = kOutside;
+  });
+  SpreadMark(grid, kInside, band - distance, marks);
+  SurfaceHeight height(cloud);
+  visit_all([&](std::size_t at, const Vector3& p) {
+    const double side = marks[at] == kOutside ? band : -band;
+    grid.values[at] = static_cast<float>(marks[at] == kNear ? height.Calc(p) : side);
+  });
+  DropSpecks(grid);
+  return grid;
+}
+
+// The convex hull of all points, beyond which the surface does not reach: where chance left a
+// corner bare, the planes around it would.
+class PointHull {
+ public:
+  explicit PointHull(const SampledCloud& cloud)
+      : distance_(CalcConvexHull(cloud.P)),
+        index_(cloud.P, 2.0 * cloud.spacing),
+        N_(cloud.N),
+        spacing_(cloud.spacing) {}
+
+  // Across an edge the hull cuts off what lies between the points on either side: the less normals
+  // there point the way that a vertex sticks out, the farther it may.
+  void PullIn(TriangleMesh& mesh) const {
+    constexpr double kAlongNormal = 0.05, kAcross = 0.4, kSlope = 1.2;  // in spacings
+    constexpr int kFew = 8;
+    std::vector<int> found;
+    for (int v = 0; v < mesh.V.rows(); ++v) {
+      const Vector3 p = mesh.V.row(v);
+      if (distance_.Calc(p) <= kAlongNormal * spacing_) continue;
+      const NearestPoint nearest = distance_.FindNearest(p);
+      const Vector3 out = (p - nearest.p_B) / nearest.distance;
+      index_.FindNearest(nearest.p_B, kFew, found);
+      double cos_most = 0.0;
+      for (const int i : found) cos_most = std::max(cos_most, out.dot(N_.row(i)));
+      const double limit = spacing_ * std::min(kAlongNormal + kSlope * (1.0 - cos_most), kAcross);
+      if (nearest.distance > limit) mesh.V.row(v) = nearest.p_B + limit * out;
+    }
+  }
+
+ private:
+  MeshDistance distance_;
+  PointIndex index_;
+  MatrixX3 N_;
+  double spacing_;
+};
+
+// The component with the largest volume.
+TriangleMesh LargestComponent(const TriangleMesh& mesh) {
+  if (mesh.F.rows() == 0) return mesh;
+  const std::vector<int> label = LabelComponents(mesh);
+  const int count = 1 + *std::max_element(label.begin(), label.end());
+  std::vector<double> volume(count, 0.0);
+  const Vector3 origin = mesh.V.row(0);
+  for (int f = 0; f < mesh.F.rows(); ++f) {
+    const Vector3 a = mesh.V.row(mesh.F(f, 0)).transpose() - origin;
+    const Vector3 b = mesh.V.row(mesh.F(f, 1)).transpose() - origin;
+    const Vector3 c = mesh.V.row(mesh.F(f, 2)).transpose() - origin;
+    volume[label[f]] += a.dot(b.cross(c));
+  }
+  const auto largest =
+      static_cast<int>(std::max_element(volume.begin(), volume.end()) - volume.begin());
+  std::vector<bool> keep(label.size());
+  std::transform(label.begin(), label.end(), keep.begin(), [&](int of) { return of == largest; });
+  return TakeFaces(mesh, keep);
+}
+
+std::vector<double> MeasureErrors(const MatrixX3& P, const TriangleMesh& mesh) {
+  const MeshDistance distance(mesh);
+  std::vector<double> errors;
+  for (int i = 0; i < P.rows(); ++i) errors.push_back(std::abs(distance.Calc(P.row(i))));
+  return errors;
+}
+
+double Mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// The surface as the grid has it, or smoothed where that takes handles away and fits the points
+// about as well.
+TriangleMesh ExtractBest(const SampledCloud& cloud, ScalarGrid grid) {
+  const auto extract = [](ScalarGrid& field) {
+    FillPockets(field);
+    return LargestComponent(ExtractSurface(field));
+  };
+  ScalarGrid smooth = grid;
+  TriangleMesh sharp_mesh = extract(grid);
+  if (sharp_mesh.F.rows() == 0 || CalcEulerNumber(sharp_mesh) == 2) return sharp_mesh;
+  Smooth(smooth, 1.5 * grid.cell);
+  TriangleMesh smooth_mesh = extract(smooth);
+  if (smooth_mesh.F.rows() == 0 || CalcEulerNumber(smooth_mesh) <= CalcEulerNumber(sharp_mesh)) {
+    return sharp_mesh;
+  }
+  const double more =
+      Mean(MeasureErrors(cloud.P, smooth_mesh)) - Mean(MeasureErrors(cloud.P, sharp_mesh));
+  constexpr double kAboutAsWell = 0.08;  // in spacings
+  return more < kAboutAsWell * cloud.spacing ? smooth_mesh : sharp_mesh;
+}
+
+}  // namespace
+
+Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normals) {
+  const std::vector<int> chosen = ChoosePoints(points);
+  if (chosen.size() < kMinPoints) {
+    throw UnclosedCloud(fmt::format("at least {} points", kMinPoints),
+                        fmt::format("which has {}", chosen.size()));
+  }
+  SampledCloud cloud;
+  cloud.P = TakeRows(points, chosen);
+  FindNeighbourhoods(cloud);
+  const std::string closed = "points all over a closed surface";
+  const double thickness = CalcThickness(cloud.P);
+  if (thickness < 0.5 * cloud.spacing) {
+    throw UnclosedCloud(closed,
+                        fmt::format("which lie within {:.2f} mm of a plane", 1e3 * thickness));
+  }
+  if (normals.rows() == points.rows()) cloud.N = TakeRows(normals, chosen);
+  const bool has_normals =
+      cloud.N.rows() > 0 && cloud.N.allFinite() && cloud.N.rowwise().squaredNorm().minCoeff() > 0.0;
+  if (has_normals) {
+    cloud.N.rowwise().normalize();
+  } else {
+    FitPlanes(cloud);
+  }
+  CloudFlood flood = OrientOutward(cloud, has_normals);
+  const double distance = 0.75 * cloud.widest;
+  flood.Spread(distance);
+  const PointHull hull(cloud);
+  DropStrays(cloud);
+
+  TriangleMesh mesh = ExtractBest(cloud, Evaluate(cloud, flood, distance));
+  if (mesh.F.rows() == 0 || CalcVolume(mesh) <= 0.0) {
+    throw UnclosedCloud(closed, "around which no closed surface was found");
+  }
+  Reconstruction result;
+  result.spacing = cloud.spacing;
+  result.euler_number = CalcEulerNumber(mesh);
+  const int handles = 1 - result.euler_number / 2;
+  if (handles > kMaxHandles) {
+    throw UnclosedCloud("points denser than the shape's walls are thick",
+                        fmt::format("whose points are {:.1f} mm apart and give {} holes",
+                                    1e3 * cloud.spacing, handles));
+  }
+  hull.PullIn(mesh);
+  result.mesh = SimplifyMesh(mesh, {}, kMaxTriangles);
+  const std::vector<double> errors = MeasureErrors(TakeRows(points, chosen), result.mesh);
+  result.mean_error = Mean(errors);
+  result.p99_error = Percentile(errors, 0.99);
+  if (result.p99_error > 2.0 * cloud.widest) {
+    throw UnclosedCloud(closed, fmt::format("of which some lie {:.1f} mm off the surface found",
+                                            1e3 * result.p99_error));
+  }
+  return result;
+}
+
+}  // namespace pregrasp
