@@ -4,14 +4,16 @@
 #include <filesystem>
 #include <string>
 
+#include "app/geometry/point_cloud.h"
 #include "bindings/script.h"
 #include "tests/bindings/lua_text.h"
+#include "tests/geometry/write_mesh.h"
 
 namespace pregrasp {
 namespace {
 
-using testing::internal::CaptureStdout;
-using testing::internal::GetCapturedStdout;
+using ::testing::internal::CaptureStdout;
+using ::testing::internal::GetCapturedStdout;
 
 // A 0.2 kg cube on a table, and a movable neighbour.
 const char* const kPrelude = R"(local pg = require "pregrasp"
@@ -123,6 +125,32 @@ TEST(SessionBindingTest, GivesCloudDistanceAndMesh) {
     local d = s:distance{0, 0, 0.3}
     print(("%.3f %.3f"):format(d.phi, d.nhat[3])))"),
             "100\t100\t100\t40\t40\ttrue\n0.250 0.800\n");
+}
+
+TEST(SessionBindingTest, OpensAnObjectAndAnEnvironmentThatAreClouds) {
+  const TestFolder folder;
+  const auto write = [&](const std::string& name, const Shape& shape) {
+    const TriangleMesh points{SamplePointCloud(shape, 1500, Rng(1)).P, MatrixX3i(0, 3)};
+    folder.Write(name, testing::PlyText(points, "binary_little_endian"));
+  };
+  write("can.ply", Cylinder{0.033, 0.1});
+  write("slab.ply", Box{Vector3(0.2, 0.2, 0.03)});
+  folder.Write("clouds.lua", R"(return scene {
+    name = "clouds",
+    object = { shape = cloud{"can.ply"}, mass = 0.2, p = {0, 0, 0.0501} },
+    environment = { { name = "slab", shape = cloud{"slab.ply"}, p = {0, 0, -0.0151} } },
+  })");
+  EXPECT_EQ(RunIn(folder, R"(
+    local s = pg.open "clouds.lua"
+    local r = s:settle{ seconds = 0.2 }
+    print(r.at_rest, s:cloud{ points = 64 }.count, s:mesh{ triangles = 40 }.num_triangles)
+    print(math.abs(s:distance{ 0, 0, 0.02 }.phi - 0.02) < 0.002)
+    s:record{ dir = "out/run", pictures = "key" }
+    s:shot{}
+    print(#s:save() > 0))",
+                  ConfigIn(folder)),
+            "true\t64\t40\ntrue\ntrue\n");
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/run/frames"));
 }
 
 TEST(SessionBindingTest, TheSameScriptAndSeedGiveTheSameBytesForAnyThreads) {
