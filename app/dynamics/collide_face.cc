@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -87,7 +88,8 @@ void AddCapsulePoints(const FacePlane& plane, Manifold* manifold) {
 // origin.
 void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   constexpr int kMaxVertices = 64;
-  const std::vector<Vector3>& vertices = plane.q.convex->polytope->vertices;
+  const Polytope& polytope = *plane.q.convex->polytope;
+  const std::vector<Vector3>& vertices = polytope.vertices;
   const int ix = (plane.i + 1) % 3, iy = (plane.i + 2) % 3;
   const Vector3 n = plane.s * plane.R_AQ.row(plane.i);
   const Vector3 x = plane.R_AQ.row(ix), y = plane.R_AQ.row(iy);
@@ -96,15 +98,24 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   std::array<PlanarPoint, kMaxVertices + 1> points;
   int count = 1, lowest = 0;  // the first place is the lowest vertex's
   double lowest_height = n.dot(vertices[0]);
-  for (int i = 0; i < static_cast<int>(vertices.size()); ++i) {
-    const double height = n.dot(vertices[i]);
-    if (height < lowest_height) {
-      lowest_height = height;
-      lowest = i;
+  std::array<double, kMaxVertices> heights;
+  const int num_vertices = static_cast<int>(vertices.size());
+  for (int first = 0; first < num_vertices; first += kMaxVertices) {
+    const int block = std::min(kMaxVertices, num_vertices - first);
+    const double *vx = polytope.x.data() + first, *vy = polytope.y.data() + first,
+                 *vz = polytope.z.data() + first;
+    for (int i = 0; i < block; ++i) heights[i] = n.x() * vx[i] + n.y() * vy[i] + n.z() * vz[i];
+    for (int i = 0; i < block; ++i) {
+      const double height = heights[i];
+      if (height < lowest_height) {
+        lowest_height = height;
+        lowest = first + i;
+      }
+      if (height > limit || count > kMaxVertices) continue;
+      const Vector3& vertex = vertices[first + i];
+      points[count++] = {x.dot(vertex), y.dot(vertex), base + height,
+                         static_cast<std::uint32_t>(first + i)};
     }
-    if (height > limit || count > kMaxVertices) continue;
-    points[count++] = {x.dot(vertices[i]), y.dot(vertices[i]), base + height,
-                       static_cast<std::uint32_t>(i)};
   }
   if (lowest_height > limit) return;
   points[0] = {x.dot(vertices[lowest]), y.dot(vertices[lowest]), base + lowest_height,

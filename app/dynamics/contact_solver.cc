@@ -14,11 +14,9 @@ constexpr double kCorrectionSlop = 1e-6;     // [m]
 // Slower impacts do not bounce [m/s].
 constexpr double kMinBounceSpeed = 0.2;
 
-// The larger eigenvalue of the symmetric 2 x 2 matrix (a, b; b, c).
-inline double LargerEigenvalue(double a, double b, double c) {
-  const double difference = 0.5 * (a - c);
-  return 0.5 * (a + c) + std::sqrt(difference * difference + b * b);
-}
+// A bound of the larger eigenvalue of the symmetric 2 x 2 matrix (a, b; b, c), exact where b = 0 or
+// a = c.
+inline double BoundEigenvalue(double a, double b, double c) { return std::max(a, c) + std::abs(b); }
 
 // Rows normal, tangent 1, tangent 2 of point p_W on one body. frame_P holds the columns tangent 1,
 // tangent 2, normal in the body's principal axes.
@@ -48,7 +46,7 @@ inline void SetEffectiveMasses(double inv_mass_sum, PointRows* row) {
   row->K_n1 = K(0, 1);
   row->K_n2 = K(0, 2);
   const double determinant = k_11 * k_22 - k_12 * k_12;
-  const double larger = LargerEigenvalue(k_11, k_12, k_22);
+  const double larger = BoundEigenvalue(k_11, k_12, k_22);
   const double inv_all = 1.0 / (k_nn * determinant * larger);  // one division for all three
   row->inv_K_nn = inv_all * determinant * larger;
   const double inv_determinant = inv_all * k_nn * larger;
@@ -67,9 +65,18 @@ void ProjectOnCircle(double limit, double* a, double* b) {
   *b *= scale;
 }
 
+// Adds a change of a point's impulse (normal, tangent 1, tangent 2) to the velocities.
+inline void AddToVelocities(const PointRows& row, const Vector3& d, Vector6* y) {
+  y[row.first] += row.J_first[0] * d[0] + row.J_first[1] * d[1] + row.J_first[2] * d[2];
+  if (row.second < 0) return;
+  y[row.second] += row.J_second[0] * d[0] + row.J_second[1] * d[1] + row.J_second[2] * d[2];
+}
+
 // One Gauss-Seidel update of a point; returns the largest change of its impulse [N s].
 inline double SweepPoint(PointRows& row, Vector6* y) {
-  Vector6& y1 = y[row.first];
+  row.last_change = row.change;
+  row.change.setZero();
+  const Vector6& y1 = y[row.first];
   double v_n = row.bias + row.J_first[0].dot(y1);
   if (row.second >= 0) v_n += row.J_second[0].dot(y[row.second]);
   const double lambda_n = std::max(0.0, row.lambda_n - v_n * row.inv_K_nn);
@@ -94,15 +101,12 @@ inline double SweepPoint(PointRows& row, Vector6* y) {
     lambda_2 = row.lambda_2 - row.inv_K_tt_max * v_2;
     ProjectOnCircle(limit, &lambda_1, &lambda_2);
   }
-  const double d_1 = lambda_1 - row.lambda_1, d_2 = lambda_2 - row.lambda_2;
+  row.change = Vector3(d_n, lambda_1 - row.lambda_1, lambda_2 - row.lambda_2);
   row.lambda_n = lambda_n;
   row.lambda_1 = lambda_1;
   row.lambda_2 = lambda_2;
-  y1 += row.J_first[0] * d_n + row.J_first[1] * d_1 + row.J_first[2] * d_2;
-  if (row.second >= 0) {
-    y[row.second] += row.J_second[0] * d_n + row.J_second[1] * d_1 + row.J_second[2] * d_2;
-  }
-  return std::max(std::abs(d_n), std::max(std::abs(d_1), std::abs(d_2)));
+  AddToVelocities(row, row.change, y);
+  return std::max(std::abs(d_n), std::max(std::abs(row.change[1]), std::abs(row.change[2])));
 }
 
 // One Gauss-Seidel update of a finger. The spring's impulse is cut to the friction cone, then to
@@ -127,10 +131,11 @@ double SweepFinger(FingerRows& row, Vector6* y) {
         lambda.squaredNorm() <= max2)) {
     lambda[0] = std::max(0.0, row.lambda[0] - v[0] / row.K(0, 0));
     const Vector2 v_t = v.tail<2>() + row.K.block<2, 1>(1, 0) * (lambda[0] - row.lambda[0]);
-    lambda.tail<2>() = row.lambda.tail<2>() - row.inv_K_tt_max * v_t;
+    lambda.tail<2>() =
+        row.lambda.tail<2>() - v_t / BoundEigenvalue(row.K(1, 1), row.K(1, 2), row.K(2, 2));
     cut_to_cone(&lambda);
     if (lambda.squaredNorm() > max2) {
-      lambda = row.lambda - row.inv_K_max * v;
+      lambda = row.lambda - v / row.K.norm();  // which bounds the largest eigenvalue
       lambda[0] = std::max(0.0, lambda[0]);
       cut_to_cone(&lambda);
       const double norm = lambda.norm();
@@ -166,9 +171,13 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
     y_[i].tail<3>() = (motions[i].R_WP.transpose() * motions[i].w_WB)
                           .cwiseProduct(kernel.I_P.cwiseProduct(kernel.inv_sqrt_I_P));
   }
-  points_.clear();
+  std::size_t num_points = 0;
+  for (const Contact& contact : contacts) num_points += contact.manifold.size;
+  if (rows_.size() < num_points) rows_.resize(num_points);
+  points_ = std::span(rows_.data(), num_points);
   fingers_.clear();
   frames_.resize(contacts.size());
+  std::size_t next = 0;
   std::size_t cached = 0;  // contacts and cache are in the same order of pieces
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
@@ -184,12 +193,12 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
     const double inv_mass_first = 1.0 / kernels[first].mass;
     const double inv_mass_second = second >= 0 ? 1.0 / kernels[second].mass : 0.0;
     for (int k = 0; k < contact.manifold.size; ++k) {
+      PointRows& row = points_[next++];
+      row.point = k;
       const ManifoldPoint& point = contact.manifold.points[k];
-      PointRows& row = points_.emplace_back();
       row.first = first;
       row.second = second;
       row.contact = static_cast<int>(c);
-      row.point = k;
       row.friction = contact.friction;
       row.phi = point.phi;
       row.inv_mass = std::max(inv_mass_first, inv_mass_second);
@@ -201,6 +210,9 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
       }
       SetEffectiveMasses(inv_mass_first + inv_mass_second, &row);
       row.bias = CalcBias(config, row);
+      row.lambda_n = row.lambda_1 = row.lambda_2 = row.correction = 0.0;
+      row.change.setZero();
+      row.jump.setZero();
       const Vector3* impulse_W = FindImpulse(cache, cached, contact.key + point.feature);
       if (impulse_W != nullptr) {
         row.lambda_n = std::max(0.0, frames_[c].col(2).dot(*impulse_W));
@@ -211,13 +223,8 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
     }
   }
   // Only now, so that the bounce is computed from the velocities before any impulse.
-  for (PointRows& row : points_) {
-    y_[row.first] += row.J_first[0] * row.lambda_n + row.J_first[1] * row.lambda_1 +
-                     row.J_first[2] * row.lambda_2;
-    if (row.second >= 0) {
-      y_[row.second] += row.J_second[0] * row.lambda_n + row.J_second[1] * row.lambda_1 +
-                        row.J_second[2] * row.lambda_2;
-    }
+  for (const PointRows& row : points_) {
+    AddToVelocities(row, Vector3(row.lambda_n, row.lambda_1, row.lambda_2), y_.data());
   }
 }
 
@@ -233,7 +240,8 @@ double ContactSolver::CalcBias(const StepConfig& config, const PointRows& row) c
 }
 
 void ContactSolver::AddFinger(const BodyKernel& kernel, const BodyMotion& motion,
-                              FingerRows finger) {
+                              const FingerRows& rows) {
+  FingerRows& finger = fingers_.emplace_back(rows);
   // The rows push inward: minus the outward normal, with the tangents as they are.
   Matrix3 frame_W = finger.R_WC;
   frame_W.col(2) = -finger.R_WC.col(2);
@@ -246,19 +254,13 @@ void ContactSolver::AddFinger(const BodyKernel& kernel, const BodyMotion& motion
     finger.K(i, i) += finger.gamma;
   }
   finger.inv_K = finger.K.inverse();
-  finger.inv_K_tt_max = 1.0 / LargerEigenvalue(finger.K(1, 1), finger.K(1, 2), finger.K(2, 2));
-  finger.inv_K_max = 1.0 / finger.K.norm();  // the Frobenius norm bounds the largest eigenvalue
   finger.inv_mass = 1.0 / kernel.mass;
   y_[0] += finger.J[0] * finger.lambda[0] + finger.J[1] * finger.lambda[1] +
            finger.J[2] * finger.lambda[2];
-  fingers_.push_back(finger);
 }
 
 void ContactSolver::Solve(const StepConfig& config) {
   const int max_sweeps = y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many;
-  // On one body, sweeping to and fro converges faster. Along a row of bodies it does not: a push
-  // travels in the order of the pairs.
-  const bool alternate = y_.size() == 1;
   bool overlap = false;
   for (const PointRows& row : points_) overlap = overlap || row.phi < -kCorrectionSlop;
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
@@ -266,15 +268,45 @@ void ContactSolver::Solve(const StepConfig& config) {
     for (FingerRows& row : fingers_) {
       change = std::max(change, SweepFinger(row, y_.data()) * row.inv_mass);
     }
-    const bool backward = alternate && sweep % 2 == 1;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      PointRows& row = points_[backward ? points_.size() - 1 - i : i];
+    for (PointRows& row : points_) {
       change = std::max(change, SweepPoint(row, y_.data()) * row.inv_mass);
     }
     if (change < config.tolerance) break;
+    if (sweep > 0 && sweep + 1 < max_sweeps) Accelerate();
   }
   z_.assign(y_.size(), Vector6::Zero());
   if (overlap) CorrectPositions(config, max_sweeps);
+}
+
+// Where sweeps make slow progress, what they change is nearly a multiple of what the sweep before
+// changed: goes on along the line that this gives, to where the change would vanish (Anderson's
+// acceleration of depth one; Walker and Ni 2011).
+void ContactSolver::Accelerate() {
+  constexpr double kMinStretch = -0.5, kMaxStretch = 10.0, kStretchStep = 1.0 / 64.0;
+  double along = 0.0, length2 = 0.0;
+  for (const PointRows& row : points_) {
+    const Vector3 d = row.change - row.last_change;
+    along += row.change.dot(d);
+    length2 += d.squaredNorm();
+  }
+  if (!(length2 > 0.0 && std::isfinite(length2))) return;
+  // In coarse steps, so that rounding errors are not magnified.
+  const double stretch =
+      kStretchStep *
+      static_cast<int>(std::clamp(-along / length2, kMinStretch, kMaxStretch) / kStretchStep);
+  for (PointRows& row : points_) {
+    // What came of the last sweep, measured from what came of the one before.
+    const Vector3 progress = row.jump + row.change;
+    const double lambda_n = std::max(0.0, row.lambda_n + stretch * progress[0]);
+    double lambda_1 = row.lambda_1 + stretch * progress[1];
+    double lambda_2 = row.lambda_2 + stretch * progress[2];
+    ProjectOnCircle(row.friction * lambda_n, &lambda_1, &lambda_2);
+    row.jump = Vector3(lambda_n - row.lambda_n, lambda_1 - row.lambda_1, lambda_2 - row.lambda_2);
+    row.lambda_n = lambda_n;
+    row.lambda_1 = lambda_1;
+    row.lambda_2 = lambda_2;
+    AddToVelocities(row, row.jump, y_.data());
+  }
 }
 
 // Pseudo-velocities z move overlapping bodies apart in this step and are then forgotten, so that

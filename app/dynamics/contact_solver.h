@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "app/dynamics/contact_set.h"
@@ -25,10 +26,13 @@ struct PointRows {
   double inv_K_nn = 0.0;          ///< K = J M^-1 J^T
   double K_n1 = 0.0, K_n2 = 0.0;  ///< coupling of the normal with the tangents
   double inv_K_11 = 0.0, inv_K_12 = 0.0, inv_K_22 = 0.0;  ///< inverse of the tangential block
-  double inv_K_tt_max = 0.0;                              ///< 1 / its larger eigenvalue
+  double inv_K_tt_max = 0.0;                              ///< 1 / a bound of its eigenvalues
   double inv_mass = 0.0;                                  ///< of the lighter body
   double lambda_n = 0.0, lambda_1 = 0.0, lambda_2 = 0.0;  ///< impulses [N s]
-  double correction = 0.0;  ///< pseudo-impulse of the position correction [N s]
+  Vector3 change = Vector3::Zero();       ///< of the impulses in the last sweep [N s]
+  Vector3 last_change = Vector3::Zero();  ///< in the sweep before
+  Vector3 jump = Vector3::Zero();         ///< between the two, see Accelerate
+  double correction = 0.0;                ///< pseudo-impulse of the position correction [N s]
   double correction_bias = 0.0;
   int contact = 0, point = 0;  ///< where it came from
 };
@@ -43,7 +47,6 @@ struct FingerRows {
   double friction = 0.0, max_impulse = 0.0;
   Matrix3 K = Matrix3::Zero();  ///< J M^-1 J^T + gamma
   Matrix3 inv_K = Matrix3::Zero();
-  double inv_K_tt_max = 0.0, inv_K_max = 0.0;
   double inv_mass = 0.0;
   Vector3 lambda = Vector3::Zero();  ///< impulse on the object: inward, tangent 1, tangent 2
   bool sliding = false;              ///< held by the friction cone in the last sweep
@@ -69,12 +72,12 @@ class ContactSolver {
 
   /// Adds a finger on movable 0: position, friction, spring and starting impulse as filled in by
   /// the caller; Jacobian and K are set here.
-  void AddFinger(const BodyKernel& kernel, const BodyMotion& motion, FingerRows finger);
+  void AddFinger(const BodyKernel& kernel, const BodyMotion& motion, const FingerRows& rows);
 
   /// Velocity sweeps, then, if a pair overlaps, position-correction sweeps.
   void Solve(const StepConfig& config);
 
-  const std::vector<PointRows>& points() const { return points_; }
+  std::span<const PointRows> points() const { return points_; }
   const std::vector<FingerRows>& fingers() const { return fingers_; }
   const Matrix3& frame(const PointRows& point) const { return frames_[point.contact]; }
 
@@ -104,10 +107,12 @@ class ContactSolver {
 
  private:
   double CalcBias(const StepConfig& config, const PointRows& row) const;
+  void Accelerate();
   void CorrectPositions(const StepConfig& config, int max_sweeps);
 
   std::vector<Vector6> y_, z_;
-  std::vector<PointRows> points_;
+  std::vector<PointRows> rows_;  ///< memory for the points
+  std::span<PointRows> points_;
   std::vector<FingerRows> fingers_;
   std::vector<Matrix3> frames_;  ///< by contact: tangent 1, tangent 2, normal
 };

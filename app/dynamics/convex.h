@@ -21,8 +21,16 @@ struct Polytope {
     int first = 0, count = 0;         ///< range in `corners`
   };
   std::vector<Vector3> vertices;
+  std::vector<double> x, y, z;  ///< of the vertices, for loops over all of them
   std::vector<Face> faces;
   std::vector<int> corners;  ///< vertex indices, face after face
+
+  void AddVertex(const Vector3& p) {
+    vertices.push_back(p);
+    x.push_back(p.x());
+    y.push_back(p.y());
+    z.push_back(p.z());
+  }
 
   /// The corner of face `f` numbered `i`, counted around it.
   const Vector3& corner(const Face& face, int i) const { return vertices[corners[face.first + i]]; }

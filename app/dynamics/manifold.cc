@@ -13,9 +13,26 @@ constexpr double kSizeTie = 1e-6;
 // Twice the area of a triangle that holds nothing [m^2].
 constexpr double kMinArea = 1e-14;
 
-// Twice the signed area of triangle (a, b, c).
-double Area(const PlanarPoint& a, const PlanarPoint& b, const PlanarPoint& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+// A linear function of the tangent plane: twice the signed area of the triangle that a point makes
+// with two others.
+struct SignedArea {
+  double x0, y0, dx, dy;
+
+  SignedArea(const PlanarPoint& from, const PlanarPoint& to)
+      : x0(from.x), y0(from.y), dx(to.x - from.x), dy(to.y - from.y) {}
+  double At(double x, double y) const { return dx * (y - y0) - dy * (x - x0); }
+};
+
+// The first of the largest values, but for ties, that is above `least`; -1 if none is.
+int FindLargest(const double* values, int count, double least) {
+  int largest = -1;
+  double limit = least;
+  for (int i = 0; i < count; ++i) {
+    if (values[i] <= limit) continue;
+    limit = values[i] * (1.0 + kSizeTie) + kMinArea;
+    largest = i;
+  }
+  return largest;
 }
 
 }  // namespace
@@ -37,56 +54,45 @@ int ChooseFour(const PlanarPoint* points, int count, const Approach& approach,
     for (int i = 0; i < count; ++i) (*chosen)[i] = i;
     return count;
   }
+  // Each choice is a pass of arithmetic over all points, which compilers turn into vector
+  // instructions, and a search through its results.
+  std::array<double, kMaxPlanarPoints> x, y, value;
+  for (int i = 0; i < count; ++i) {
+    x[i] = points[i].x;
+    y[i] = points[i].y;
+    value[i] = points[i].phi;
+  }
+  for (int i = 0; i < count; ++i) value[i] += approach.At(x[i], y[i]);
   int first = 0;
-  double lowest = points[0].phi + approach.At(points[0].x, points[0].y);
   for (int i = 1; i < count; ++i) {
-    const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
-    if (gap < lowest - kDepthTie) {
-      lowest = gap;
-      first = i;
-    }
+    if (value[i] < value[first] - kDepthTie) first = i;
   }
   const PlanarPoint& p0 = points[first];
-  int second = -1;
-  double farthest = 0.0;
   for (int i = 0; i < count; ++i) {
-    const double dx = points[i].x - p0.x, dy = points[i].y - p0.y;
-    const double distance2 = dx * dx + dy * dy;
-    if (distance2 > farthest * (1.0 + kSizeTie)) {
-      farthest = distance2;
-      second = i;
-    }
+    value[i] = (x[i] - p0.x) * (x[i] - p0.x) + (y[i] - p0.y) * (y[i] - p0.y);
   }
+  const int second = FindLargest(value.data(), count, 0.0);
   (*chosen)[0] = first;
   if (second < 0) return 1;
   (*chosen)[1] = second;
   const PlanarPoint& p1 = points[second];
 
-  int third = -1;
-  double third_area = 0.0;
-  for (int i = 0; i < count; ++i) {
-    const double area = Area(p0, p1, points[i]);
-    if (std::abs(area) > std::abs(third_area) * (1.0 + kSizeTie) + kMinArea) {
-      third_area = area;
-      third = i;
-    }
-  }
+  const SignedArea base(p0, p1);
+  for (int i = 0; i < count; ++i) value[i] = std::abs(base.At(x[i], y[i]));
+  const int third = FindLargest(value.data(), count, kMinArea);
   if (third < 0) return 2;
   (*chosen)[2] = third;
   const PlanarPoint& p2 = points[third];
 
-  const double sign = third_area > 0.0 ? 1.0 : -1.0;
-  int fourth = -1;
-  double fourth_area = kMinArea;
+  const double sign = base.At(p2.x, p2.y) > 0.0 ? 1.0 : -1.0;
+  const SignedArea side_1(p1, p2), side_2(p2, p0);
   for (int i = 0; i < count; ++i) {
-    const PlanarPoint& p = points[i];
-    const double outside =
-        -std::min({sign * Area(p0, p1, p), sign * Area(p1, p2, p), sign * Area(p2, p0, p)});
-    if (outside > fourth_area * (1.0 + kSizeTie)) {
-      fourth_area = outside;
-      fourth = i;
-    }
+    const double outside_0 = -sign * base.At(x[i], y[i]);
+    const double outside_1 = -sign * side_1.At(x[i], y[i]);
+    const double outside_2 = -sign * side_2.At(x[i], y[i]);
+    value[i] = std::max(outside_0, std::max(outside_1, outside_2));
   }
+  const int fourth = FindLargest(value.data(), count, kMinArea);
   if (fourth < 0) return 3;
   (*chosen)[3] = fourth;
   return 4;

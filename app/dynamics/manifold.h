@@ -36,6 +36,9 @@ struct PlanarPoint {
   std::uint32_t feature = 0;
 };
 
+/// The most points that ChooseFour chooses from.
+inline constexpr int kMaxPlanarPoints = 256;
+
 /// How the gap between two pieces changes in a step, over the places of the tangent plane.
 struct Approach {
   double at_origin = 0.0, per_x = 0.0, per_y = 0.0;
@@ -46,9 +49,10 @@ struct Approach {
   double At(double x, double y) const { return at_origin + per_x * x + per_y * y; }
 };
 
-/// Chooses at most four of `count` points that stand for all: the deepest at the end of the step,
-/// the farthest from it, the one that makes the largest triangle, and the one farthest outside that
-/// triangle. Ties within a tolerance go to the lower index, so that the choice does not flicker.
+/// Chooses at most four of `count` points (kMaxPlanarPoints at most) that stand for all: the
+/// deepest at the end of the step, the farthest from it, the one that makes the largest triangle,
+/// and the one farthest outside that triangle. Ties within a tolerance go to the lower index, so
+/// that the choice does not flicker.
 /// @returns how many; their indices are in `chosen`.
 int ChooseFour(const PlanarPoint* points, int count, const Approach& approach,
                std::array<int, Manifold::kMaxPoints>* chosen);

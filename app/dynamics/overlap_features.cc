@@ -21,7 +21,7 @@ constexpr double kAlmostFlat = 0.05;
 // Lines within this angle [rad] lie along each other.
 constexpr double kParallel = 2e-3;
 
-constexpr int kMaxCandidates = 256;
+constexpr int kMaxCandidates = kMaxPlanarPoints;
 
 // A feature seen along the contact normal: x and y in the tangent plane, heights along the normal.
 struct Outline {

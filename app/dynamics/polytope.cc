@@ -98,9 +98,9 @@ void AddFace(const Vector3& nhat, const std::vector<int>& outline, Polytope* pol
 Polytope MakeBoxPolytope(const Vector3& half) {
   Polytope polytope;
   for (int i = 0; i < 8; ++i) {
-    polytope.vertices.push_back(Vector3((i & 1) != 0 ? half.x() : -half.x(),
-                                        (i & 2) != 0 ? half.y() : -half.y(),
-                                        (i & 4) != 0 ? half.z() : -half.z()));
+    polytope.AddVertex(Vector3((i & 1) != 0 ? half.x() : -half.x(),
+                               (i & 2) != 0 ? half.y() : -half.y(),
+                               (i & 4) != 0 ? half.z() : -half.z()));
   }
   for (int axis = 0; axis < 3; ++axis) {
     const int bit = 1 << axis, bit_u = 1 << (axis + 1) % 3, bit_v = 1 << (axis + 2) % 3;
@@ -124,7 +124,7 @@ Polytope MakeBoxPolytope(const Vector3& half) {
 
 Polytope MakePolytope(const TriangleMesh& hull) {
   Polytope polytope;
-  for (int i = 0; i < hull.V.rows(); ++i) polytope.vertices.push_back(hull.V.row(i));
+  for (int i = 0; i < hull.V.rows(); ++i) polytope.AddVertex(hull.V.row(i));
   const double size = (hull.V.colwise().maxCoeff() - hull.V.colwise().minCoeff()).maxCoeff();
   std::vector<Triangle> triangles(hull.F.rows());
   std::map<Edge, int> triangle_of_edge;
