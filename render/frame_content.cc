@@ -221,12 +221,12 @@ class Collector {
     X.linear() = R * Vector3(radius, radius, height).asDiagonal();
     X.translation() = cone.p_W;
     Rgba color = cone.color;
-    color.a *= kConeOpacity;
+    color.a = std::min(color.a, kConeOpacity);
     Draw draw = AddPart(meshes_.cone, X, color, 0.5F);
     draw.distance = DistanceOf(cone.p_W + 0.6 * cone.axis_W);
     content_.cones.push_back(draw);
     RenderLine rim;
-    rim.color = WithAlpha(cone.color, 0.8F * cone.color.a);
+    rim.color = WithAlpha(cone.color, 2.7F * color.a);
     rim.width_px = 1.2F;
     constexpr int kPieces = 48;
     for (int i = 0; i <= kPieces; ++i) {
