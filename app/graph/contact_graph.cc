@@ -199,6 +199,16 @@ int ContactGraph::NumKeptEach() const {
   return std::clamp(static_cast<int>(std::ceil(share - 1e-9)), 1, static_cast<int>(nodes_.size()));
 }
 
+void ContactGraph::SetTopPercent(double top_percent) {
+  if (stage_ > GraphStage::kScored) {
+    throw InputError("", "top_percent", "a graph that is not pruned yet", "one that is");
+  }
+  ContactGraphConfig config = config_;
+  config.top_percent = top_percent;
+  config.Validate();
+  config_ = config;
+}
+
 void ContactGraph::PruneByContext() {
   PREGRASP_CHECK(stage_ == GraphStage::kScored, static_cast<int>(stage_));
   for (int i = 0; i < NumKeptEach(); ++i) {

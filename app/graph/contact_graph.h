@@ -68,6 +68,8 @@ class ContactGraph {
   void Score(const SignedDistance& shape, const PlacementScorer& context,
              const PlacementScorer& free, std::uint64_t seed);
 
+  /// Sets the paper's M anew. @throws InputError once pruning has begun.
+  void SetTopPercent(double top_percent);
   /// Keeps the top M percent by s_c as V_c; needs kScored.
   void PruneByContext();
   /// Adds the top M percent by s_n; needs kPrunedContext.

@@ -103,4 +103,26 @@ double PathSearch::num_paths() const {
   return total;
 }
 
+std::vector<ContactPath> FindSiblings(const ContactGraph& graph, const ContactPath& path,
+                                      int count) {
+  const bool one = path.nodes.size() == 1;
+  std::vector<ContactPath> siblings;
+  for (const int id : one ? graph.kept() : graph.neighbors(path.nodes[path.nodes.size() - 2])) {
+    const ContactNode& node = graph.nodes()[id];
+    if (one && !node.initial) continue;
+    ContactPath sibling = path;
+    sibling.rank = 0;
+    sibling.nodes.back() = id;
+    sibling.terms.back() = one ? node.s_c : node.s_n;
+    const double lead = path.terms.back() - sibling.terms.back();
+    if (lead < 0.0 || (lead == 0.0 && id <= path.nodes.back())) continue;
+    sibling.score = path.score - lead;
+    siblings.push_back(std::move(sibling));
+  }
+  std::stable_sort(siblings.begin(), siblings.end(),
+                   [](const ContactPath& a, const ContactPath& b) { return a.score > b.score; });
+  if (static_cast<int>(siblings.size()) > count) siblings.resize(count);
+  return siblings;
+}
+
 }  // namespace pregrasp

@@ -14,6 +14,11 @@ struct ContactPath {
   int rank = 0;               ///< 1 is the best of all paths
 };
 
+/// The paths that differ from `path` in their last node only and come after it, best first, at most
+/// `count`: what it beat. Their ranks are unknown (0).
+std::vector<ContactPath> FindSiblings(const ContactGraph& graph, const ContactPath& path,
+                                      int count);
+
 /// All paths of a connected graph, best first, found one at a time. A copyable value: copying it
 /// remembers how far the enumeration has come.
 ///

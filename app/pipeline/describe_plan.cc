@@ -77,6 +77,27 @@ std::vector<std::string> DescribePruning(const ContactGraph& graph) {
   return lines;
 }
 
+std::string DescribeReason(const NodeReason& reason) {
+  const ContactNode& node = reason.node;
+  using Verdict = NodeReason::Verdict;
+  if (reason.verdict == Verdict::kNotScored) return NodeText(node) + " has no score yet";
+  const auto by = [&](const char* where, double score, int rank, double threshold) {
+    return fmt::format("{} it scores {:.3f}, rank {} of {} (the best {} stay, down to {:.3f})",
+                       where, score, rank, reason.num_nodes, reason.num_kept_each, threshold);
+  };
+  std::string text = NodeText(node);
+  text += reason.verdict == Verdict::kPruned          ? " is pruned: "
+          : reason.verdict == Verdict::kKeptByContext ? " is kept for its score here: "
+          : reason.verdict == Verdict::kKeptByFree    ? " is kept for its score alone: "
+                                                      : " is kept for both its scores: ";
+  text += by("here", node.s_c, node.rank_c, reason.threshold_c) + "; ";
+  text += by("without surroundings", node.s_n, node.rank_n, reason.threshold_n);
+  if (node.occluded > 0.0) {
+    text += fmt::format("; no fingertip can be at {:.0f} % of its contacts", 100 * node.occluded);
+  }
+  return text;
+}
+
 std::vector<std::string> DescribePath(const ContactGraph& graph, const ContactPath& path) {
   std::vector<std::string> lines = {
       fmt::format("Path {}: of all paths of {} contact states the one with rank {} by the sum of "

@@ -14,6 +14,8 @@ std::vector<std::string> DescribeMesh(const ContactGraph& graph);
 std::vector<std::string> DescribeScores(const ContactGraph& graph);
 /// The pruning step that the graph has taken last.
 std::vector<std::string> DescribePruning(const ContactGraph& graph);
+/// Why a node is in the graph or not, in one sentence.
+std::string DescribeReason(const NodeReason& reason);
 std::vector<std::string> DescribePath(const ContactGraph& graph, const ContactPath& path);
 std::vector<std::string> DescribeIteration(const MppiState& state);
 std::vector<std::string> DescribeCertificate(const Scene& scene, const Certificate& certificate,

@@ -37,7 +37,9 @@ PictureDrawer::~PictureDrawer() = default;
 PictureText PictureDrawer::Caption(const JournalStep& step) const {
   const Scene& scene = world_->scene();
   PictureText text;
-  text.title = fmt::format("{}   {}   t = {:.2f} s", scene.name, step.record.id, step.record.t);
+  const bool titled = step.shot && !step.shot->title.empty();
+  text.title = fmt::format("{}   {}   t = {:.2f} s", scene.name,
+                           titled ? step.shot->title : step.record.id, step.record.t);
   text.lines = step.lines;
   if (step.shot && !step.shot->caption.empty()) text.lines = {step.shot->caption};
   text.footer =

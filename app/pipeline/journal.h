@@ -32,6 +32,7 @@ struct JournalStep {
   struct Shot {
     PictureConfig config;
     std::string caption;  ///< in place of the lines, unless empty
+    std::string title;    ///< in place of the step's id, unless empty
   };
   std::optional<Shot> shot;
 };

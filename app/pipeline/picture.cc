@@ -188,28 +188,44 @@ void PictureMaker::Impl::AddFinger(RenderScene& scene, const WorldState& state, 
   }
 }
 
+namespace {
+
+// What of a stage's overlay is to be shown.
+PictureOverlay Chosen(const PictureOverlay* overlay, const PictureConfig& config) {
+  PictureOverlay chosen = overlay == nullptr ? PictureOverlay{} : *overlay;
+  if (!config.mesh) chosen.contact_mesh = nullptr;
+  if (!config.scores) {
+    std::fill(chosen.face_colors.begin(), chosen.face_colors.end(), WithAlpha(ObjectColor(), 1.0F));
+    chosen.legend = {};
+  }
+  if (!config.rollouts) chosen.ghosts.clear();
+  if (!config.hand) chosen.hand.reset();
+  return chosen;
+}
+
+}  // namespace
+
 RenderScene PictureMaker::Compose(const WorldState& state,
                                   const std::vector<ContactPoint>& contacts,
-                                  const WorldState& start, const PictureOverlay* overlay,
+                                  const WorldState& start, const PictureOverlay* stage_overlay,
                                   const PictureText& text, const PictureConfig& config) const {
   config.Validate();
-  const PictureOverlay none;
-  if (overlay == nullptr) overlay = &none;
+  const PictureOverlay overlay = Chosen(stage_overlay, config);
   RenderScene scene;
-  scene.camera = impl_->ChooseCamera(config, state, *overlay);
-  impl_->AddBodies(scene, state, *overlay);
+  scene.camera = impl_->ChooseCamera(config, state, overlay);
+  impl_->AddBodies(scene, state, overlay);
   if (config.ghost) impl_->AddStartGhost(scene, state, start);
-  for (int i = 0; i < kNumFingers && !overlay->hand; ++i) {
+  for (int i = 0; i < kNumFingers && !overlay.hand; ++i) {
     impl_->AddFinger(scene, state, static_cast<Finger>(i), config);
   }
-  impl_->AddOverlay(scene, *overlay);
+  impl_->AddOverlay(scene, overlay);
   if (config.contacts) {
     for (const ContactPoint& contact : contacts) {
       if (contact.body_a != 0 || contact.f_W.norm() < 1e-3) continue;
       scene.points.push_back({contact.p_WC, 0.0022F, NeutralColor()});
     }
   }
-  if (config.forces && overlay->forces) {
+  if (config.forces && overlay.forces) {
     const Body& object = impl_->world->scene().object();
     const Vector3 p_WBcm = state.bodies[0].X_WB() * object.mass_properties->p_BoBcm;
     const Vector3 weight_W = object.mass_properties->mass * impl_->world->scene().gravity;

@@ -23,6 +23,11 @@ struct PictureConfig {
   bool ghost = true;     ///< the object at its start, once it has left it
   bool fingers = true;   ///< the fingers themselves
   bool axes = true;      ///< the world frame's axes at its origin
+  // Of planning stages:
+  bool mesh = true;      ///< the contact mesh in place of the object
+  bool scores = true;    ///< its colours, and the legend
+  bool rollouts = true;  ///< where plans leave the object
+  bool hand = true;      ///< the whole hand
 
   /// @throws InputError for sizes outside 16 to 8192.
   void Validate() const;

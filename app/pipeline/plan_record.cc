@@ -173,7 +173,7 @@ int CountSwitches(const WorldPlan& plan) {
 
 PlanRecord::PlanRecord(Session& session, const Planner& planner)
     : session_(session), planner_(planner) {
-  outcome_.configuration = PlannerConfigJson(planner.config());
+  SetConfig(planner.config());
 }
 
 void PlanRecord::SetStart(const StartCertificate& start) {
@@ -181,6 +181,10 @@ void PlanRecord::SetStart(const StartCertificate& start) {
   outcome_.summary["start_grasps"] = {{"tried", start.search.tried},
                                       {"feasible", graspable ? 1 : 0},
                                       {"certified", start.verdict == StartVerdict::kCertified}};
+}
+
+void PlanRecord::SetConfig(const PlannerConfig& config) {
+  outcome_.configuration = PlannerConfigJson(config);
 }
 
 void PlanRecord::AddMesh(const ContactGraph& graph) {

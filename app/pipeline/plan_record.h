@@ -24,6 +24,8 @@ class PlanRecord {
   PlanRecord(Session& session, const Planner& planner);
 
   void SetStart(const StartCertificate& start);
+  /// What the manifest says of the settings; the planner's until then.
+  void SetConfig(const PlannerConfig& config);
 
   void AddMesh(const ContactGraph& graph);
   void AddScores(const ContactGraph& graph);

@@ -59,22 +59,34 @@ Planner::Planner(std::shared_ptr<const World> world, WorldState start, const Pla
       seed_(seed),
       pool_(pool) {
   config.Validate();
-  half_world_ = std::make_unique<World>(scene(), HalfStep(world_->config()));
-  environment_ = std::make_unique<EnvironmentDistance>(scene());
-  shape_ = std::make_unique<SignedDistance>(scene().object().shape);
-  score_ = std::make_unique<ScoreFunction>(ScoreFunction::Load(weights / "score.safetensors"));
-  generator_ =
-      std::make_unique<GraspGenerator>(GraspGenerator::Load(weights / "generator.safetensors"));
+  half_world_ = std::make_shared<const World>(scene(), HalfStep(world_->config()));
+  environment_ = std::make_shared<const EnvironmentDistance>(scene());
+  shape_ = std::make_shared<const SignedDistance>(scene().object().shape);
+  score_ =
+      std::make_shared<const ScoreFunction>(ScoreFunction::Load(weights / "score.safetensors"));
+  generator_ = std::make_shared<const GraspGenerator>(
+      GraspGenerator::Load(weights / "generator.safetensors"));
   PointCloud cloud = SamplePointCloud(scene().object().shape, config.cloud_points,
                                       Rng(seed, RngStream::kPointCloud));
-  generator_structure_ = std::make_unique<CloudStructure>(
+  generator_structure_ = std::make_shared<const CloudStructure>(
       generator_->BuildStructure(cloud.P, scene().object().X_WB.linear()));
-  scorer_ =
-      std::make_unique<LearnedScorer>(*score_, scene(), std::move(cloud), *environment_, pool_);
-  grasp_world_ = std::make_unique<GraspWorld>(scene(), ShadowHand());
+  scorer_ = std::make_shared<const LearnedScorer>(*score_, scene(), std::move(cloud), *environment_,
+                                                  pool_);
+  grasp_world_ = std::make_shared<const GraspWorld>(scene(), ShadowHand());
 }
 
 Planner::~Planner() = default;
+
+Planner Planner::WithConfig(const PlannerConfig& config) const {
+  config.Validate();
+  if (config.cloud_points != config_.cloud_points) {
+    throw InputError("", "points", std::to_string(config_.cloud_points) + ", as in the first graph",
+                     std::to_string(config.cloud_points));
+  }
+  Planner planner = *this;
+  planner.config_ = config;
+  return planner;
+}
 
 ContactGraph Planner::BuildGraph(const ContactMeshConfig& mesh,
                                  const ContactGraphConfig& graph) const {

@@ -48,7 +48,7 @@ struct ReleaseResult {
 };
 
 /// The stages of one scene bound together: builds what they share once, and hands each stage its
-/// inputs. No mathematics of its own. Immutable after construction.
+/// inputs. No mathematics of its own. Immutable after construction; a copy shares what was built.
 class Planner {
  public:
   /// @param start    of every plan, fingers off.
@@ -58,6 +58,10 @@ class Planner {
   Planner(std::shared_ptr<const World> world, WorldState start, const PlannerConfig& config,
           std::uint64_t seed, ThreadPool& pool, const std::filesystem::path& weights);
   ~Planner();
+
+  /// The same with other settings. @throws InputError for bad ones, or a cloud of another size,
+  /// which all of them share.
+  Planner WithConfig(const PlannerConfig& config) const;
 
   const Scene& scene() const { return world_->scene(); }
   const PlannerConfig& config() const { return config_; }
@@ -102,14 +106,14 @@ class Planner {
   PlannerConfig config_;
   std::uint64_t seed_;
   ThreadPool& pool_;
-  std::unique_ptr<World> half_world_;
-  std::unique_ptr<EnvironmentDistance> environment_;
-  std::unique_ptr<SignedDistance> shape_;
-  std::unique_ptr<ScoreFunction> score_;
-  std::unique_ptr<GraspGenerator> generator_;
-  std::unique_ptr<LearnedScorer> scorer_;
-  std::unique_ptr<CloudStructure> generator_structure_;
-  std::unique_ptr<GraspWorld> grasp_world_;
+  std::shared_ptr<const World> half_world_;
+  std::shared_ptr<const EnvironmentDistance> environment_;
+  std::shared_ptr<const SignedDistance> shape_;
+  std::shared_ptr<const ScoreFunction> score_;
+  std::shared_ptr<const GraspGenerator> generator_;
+  std::shared_ptr<const LearnedScorer> scorer_;
+  std::shared_ptr<const CloudStructure> generator_structure_;
+  std::shared_ptr<const GraspWorld> grasp_world_;
 };
 
 }  // namespace pregrasp

@@ -185,6 +185,10 @@ void Session::Step(const std::shared_ptr<Simulation>& simulation, int steps) {
 }
 
 JournalStep Session::StepOf(const Simulation& simulation) const {
+  const JournalStep& last = journal_.back();
+  if (last.record.id == simulation.step_id() && last.state.step == simulation.state().step) {
+    return last;
+  }
   JournalStep step =
       MakeStep(simulation.step_id(), "sim", simulation.state(), simulation.contacts());
   step.record.details = {{"action", "shot"}};
@@ -194,33 +198,27 @@ JournalStep Session::StepOf(const Simulation& simulation) const {
 
 namespace {
 
-// Whether the journal's step shows the simulation as it is now.
-bool Shows(const JournalStep& step, const Simulation& simulation) {
-  return step.record.id == simulation.step_id() && step.state.step == simulation.state().step;
+// Whether two steps show the same moment of the same thing.
+bool SameMoment(const JournalStep& a, const JournalStep& b) {
+  return a.record.id == b.record.id && a.state.step == b.state.step && a.overlay == b.overlay;
 }
 
 }  // namespace
 
-void Session::Shoot(const Simulation* simulation, const PictureConfig& config,
-                    const std::string& caption) {
-  config.Validate();
-  if (journal_.back().shot || (simulation != nullptr && !Shows(journal_.back(), *simulation))) {
-    JournalStep again = simulation != nullptr && !Shows(journal_.back(), *simulation)
-                            ? StepOf(*simulation)
-                            : journal_.back();
+void Session::Shoot(const JournalStep& step, const JournalStep::Shot& shot) {
+  shot.config.Validate();
+  if (journal_.back().shot || !SameMoment(journal_.back(), step)) {
+    JournalStep again = step;
     again.shot.reset();
     AddStep(std::move(again));
   }
-  journal_.back().shot = JournalStep::Shot{config, caption};
+  journal_.back().shot = shot;
 }
 
-void Session::ShootToFile(const Simulation* simulation, const PictureConfig& config,
-                          const std::string& caption, const std::filesystem::path& file) {
-  config.Validate();
-  JournalStep step = simulation != nullptr && !Shows(journal_.back(), *simulation)
-                         ? StepOf(*simulation)
-                         : journal_.back();
-  step.shot = JournalStep::Shot{config, caption};
+void Session::ShootToFile(JournalStep step, const JournalStep::Shot& shot,
+                          const std::filesystem::path& file) {
+  shot.config.Validate();
+  step.shot = shot;
   if (config_.pictures == PictureMode::kNone) return;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   drawer_->Draw(step, start_, file);
@@ -254,8 +252,16 @@ RunOutcome Session::OutcomeOfSimulation() const {
 }
 
 void Session::Finish(JournalWriter& writer, const std::optional<std::string>& status) {
-  RunOutcome outcome = outcome_ ? *outcome_ : OutcomeOfSimulation();
-  if (outcome.rollout.empty()) outcome.rollout.push_back(start_);
+  RunOutcome outcome = OutcomeOfSimulation();
+  if (outcome_) {
+    const RunOutcome simulated = std::move(outcome);
+    outcome = *outcome_;
+    // Before a trajectory is certified, the simulation is still what rollout.csv shows.
+    if (outcome.rollout.empty()) {
+      outcome.rollout = simulated.rollout;
+      outcome.summary["physics"] = simulated.summary["physics"];
+    }
+  }
   const Motion motion = CalcObjectMotion(*world_, outcome.rollout.front(), outcome.rollout.back());
   double max_speed = 0.0;
   for (const WorldState& state : outcome.rollout) {

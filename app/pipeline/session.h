@@ -65,15 +65,17 @@ class Session {
   void Wait(const std::shared_ptr<Simulation>& simulation, double seconds);
   void Step(const std::shared_ptr<Simulation>& simulation, int steps);
 
-  /// A picture of the last step, which it becomes part of; or of a simulation as it is now, when
-  /// that is not the last step.
-  /// @param simulation  null for the last step. @param caption  a line in place of the automatic
-  /// ones; empty for those.
-  void Shoot(const Simulation* simulation, const PictureConfig& config, const std::string& caption);
+  const JournalStep& last_step() const { return journal_.back(); }
+  /// A simulation as it is now, as a step.
+  JournalStep StepOf(const Simulation& simulation) const;
+
+  /// A picture of a step, which it becomes part of if it is the last one; else the step is recorded
+  /// again.
+  void Shoot(const JournalStep& step, const JournalStep::Shot& shot);
 
   /// The same, drawn now and written to a file that belongs to no run.
-  void ShootToFile(const Simulation* simulation, const PictureConfig& config,
-                   const std::string& caption, const std::filesystem::path& file);
+  void ShootToFile(JournalStep step, const JournalStep::Shot& shot,
+                   const std::filesystem::path& file);
 
   // What planning stages do, each as one step of the journal.
 
@@ -101,7 +103,6 @@ class Session {
  private:
   void Act(const std::shared_ptr<Simulation>& simulation, const std::string& what,
            nlohmann::json details, const std::function<void()>& action);
-  JournalStep StepOf(const Simulation& simulation) const;
   std::unique_ptr<JournalWriter> OpenWriter(const std::filesystem::path& directory,
                                             PictureMode pictures);
   RunOutcome OutcomeOfSimulation() const;

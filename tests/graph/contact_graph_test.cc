@@ -106,6 +106,15 @@ TEST(ContactGraphTest, PruningStepByStepEqualsPruningAtOnce) {
   EXPECT_EQ(earlier.stage(), GraphStage::kPrunedContext);
 }
 
+TEST(ContactGraphTest, AnotherPercentageCountsUntilPruningBegins) {
+  ContactGraph graph = MakeScored(10.0);
+  graph.SetTopPercent(50.0);
+  graph.Prune();
+  EXPECT_EQ(graph.Why(0).num_kept_each, static_cast<int>(graph.nodes().size()) / 2);
+  EXPECT_THROW(graph.SetTopPercent(5.0), InputError);
+  EXPECT_THROW(MakeScored(10.0).SetTopPercent(0.0), InputError);
+}
+
 TEST(ContactGraphTest, BadConfigurationsAndIdsAreBadInput) {
   ContactGraphConfig config;
   config.top_percent = 0.0;

@@ -79,6 +79,32 @@ TEST(PathSearchTest, ACopyGoesOnFromWhereItWasTaken) {
   }
 }
 
+TEST(FindSiblingsTest, AreThePathsThatLostByTheirLastNode) {
+  for (const int stages : {1, 2, 3}) {
+    const ContactGraph graph = MakeGraph(1);
+    std::vector<ContactPath> all;
+    PathSearch search(graph, stages);
+    for (ContactPath path; search.Next(&path);) all.push_back(path);
+    for (std::size_t i = 0; i < all.size(); i += 7) {
+      std::vector<int> expected;  // last nodes, in the order of the paths
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        const auto& a = all[i].nodes;
+        const auto& b = all[j].nodes;
+        if (std::equal(a.begin(), a.end() - 1, b.begin())) expected.push_back(b.back());
+      }
+      const std::size_t count = std::min<std::size_t>(3, expected.size());
+      const std::vector<ContactPath> siblings = FindSiblings(graph, all[i], 3);
+      ASSERT_EQ(siblings.size(), count);
+      for (std::size_t k = 0; k < count; ++k) {
+        EXPECT_EQ(siblings[k].nodes.back(), expected[k]);
+        EXPECT_NEAR(siblings[k].score,
+                    std::accumulate(siblings[k].terms.begin(), siblings[k].terms.end(), 0.0),
+                    1e-12);
+      }
+    }
+  }
+}
+
 TEST(PathSearchTest, AnUnprunedGraphOrAWrongLengthIsBadInput) {
   EXPECT_THROW(PathSearch(ContactGraph(MakeBoxMesh(kSize), {}), 2), InputError);
   EXPECT_THROW(PathSearch(MakeGraph(1), 0), InputError);

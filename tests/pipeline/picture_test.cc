@@ -81,6 +81,35 @@ TEST(PictureMakerTest, AStripOfSmallMotionsHasOneCamera) {
   EXPECT_EQ(maker.Compose(state, {}, state, nullptr, {}, {}).camera.p_WCam, first.p_WCam);
 }
 
+TEST(PictureMakerTest, APlanningStagesOverlayIsShownByItsNames) {
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  const PictureMaker maker(world);
+  const WorldState state = world->InitialState();
+  PictureOverlay overlay;
+  TriangleMesh mesh;
+  mesh.V = MatrixX3::Identity(3, 3);
+  mesh.F.resize(1, 3);
+  mesh.F << 0, 1, 2;
+  overlay.contact_mesh = std::make_shared<const TriangleMesh>(mesh);
+  const Rgba color{0.1F, 0.9F, 0.2F, 1.0F};
+  overlay.face_colors = {color};
+  overlay.ghosts = {{RigidTransform::Identity(), color}};
+  overlay.hand = HandConfiguration{};
+  overlay.legend.title = "score";
+  PictureConfig config;
+  const RenderScene all = maker.Compose(state, {}, state, &overlay, {}, config);
+  EXPECT_EQ(all.bodies[0].mesh, overlay.contact_mesh);
+  EXPECT_EQ(all.bodies[0].face_colors[0].g, color.g);
+  EXPECT_EQ(all.legend.title, "score");
+  config.scores = false;
+  const RenderScene plain = maker.Compose(state, {}, state, &overlay, {}, config);
+  EXPECT_NE(plain.bodies[0].face_colors[0].g, color.g);
+  EXPECT_EQ(plain.legend.title, "");
+  config.mesh = config.rollouts = config.hand = false;
+  EXPECT_EQ(maker.Compose(state, {}, state, &overlay, {}, config).bodies.size(),
+            maker.Compose(state, {}, state, nullptr, {}, config).bodies.size());
+}
+
 TEST(IsInSightTest, KnowsThePyramidOfSight) {
   const RenderCamera camera{{0, -1, 0}, {0, 0, 0}, 90.0};
   const auto sees = [&](double x, double y, double z) {

@@ -83,12 +83,12 @@ TEST_F(SessionTest, PicturesBelongToTheStepTheyWereAskedForAndChangeNothingElse)
     SessionConfig config;
     config.pictures = mode;
     Session session(MakeRulerScene(), config);
-    session.Shoot(nullptr, draft, "");
+    session.Shoot(session.last_step(), {draft, "", ""});
     const auto sim = session.Simulate();
     session.Touch(sim, Finger::kIndex, {0.11, 0, 0.0015});
     session.Wait(sim, 0.1);
-    session.Shoot(sim.get(), draft, "first");
-    session.Shoot(sim.get(), draft, "the same moment again");
+    session.Shoot(session.StepOf(*sim), {draft, "first", ""});
+    session.Shoot(session.StepOf(*sim), {draft, "the same moment again", ""});
     session.Save(folder_ / (mode == PictureMode::kNone ? "none" : "key"));
   }
   EXPECT_EQ(Ids(folder_ / "key"), (Strings{"scene.start", "sim.1", "sim.2", "sim.2"}));
