@@ -36,14 +36,17 @@ Pushed PushDistance(lua_State* L, Session& session, const Vector3& p_W) {
 Pushed PushContactMesh(lua_State* L, Session& session, int triangles) {
   ContactMeshConfig config;
   config.triangles = triangles;
-  const TriangleMesh mesh = BuildContactMesh(session.scene().object().shape, config);
+  PushMesh(L, BuildContactMesh(session.scene().object().shape, config));
+  return {1};
+}
+
+void PushMesh(lua_State* L, const TriangleMesh& mesh) {
   RecordWriter record(L, kMesh);
   record.Set("num_vertices", static_cast<int>(mesh.V.rows()))
       .Set("num_triangles", static_cast<int>(mesh.F.rows()))
       .Set("vertices", mesh.V);
   LuaMatrix<3, int>::Push(L, mesh.F, 1);  // Lua counts from 1
   record.SetTop("triangles");
-  return {1};
 }
 
 std::vector<const Schema*> GeometrySchemas() { return {&kCloud, &kDistance, &kMesh}; }

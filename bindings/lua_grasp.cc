@@ -17,6 +17,7 @@ const Schema kIkOptions{"IkOptions", {"contacts", "scene", "seed", "max_starts"}
 const Schema kIkContacts{"IkContacts", {"thumb", "index", "middle", "ring", "little"}};
 const Schema kIkContact{"IkContact", {"p", "n"}};
 const Schema kTransform{"Transform", {"p", "q"}};
+const Schema kGraspContact{"GraspContact", {"finger", "p_OC", "nhat_O"}};
 const Schema kIkResult{
     "IkResult",
     {"status", "solved", "X_WH", "q", "tip_error", "cone_angle", "clearance", "starts", "method"}};
@@ -101,15 +102,7 @@ struct LuaValue<IkOptions> {
 namespace {
 
 Pushed Wrench(lua_State* L, const WrenchOptions& options) {
-  const WrenchResult result = CalcWrench(options.contacts, options.config);
-  RecordWriter(L, kWrenchResult)
-      .Set("feasible", result.feasible())
-      .Set("closed", result.closed)
-      .Set("margin", result.margin)
-      .Set("min_normal", result.min_normal)
-      .Set("forces", result.forces)
-      .Set("status", WrenchStatusName(result.status))
-      .Set("residual", result.residual);
+  PushWrench(L, CalcWrench(options.contacts, options.config));
   return {1};
 }
 
@@ -146,13 +139,33 @@ Pushed Ik(lua_State* L, IkOptions& options) {
   } else {
     result = IkSolver(hand).Solve(config, problem, rng);
   }
+  PushIk(L, result);
+  return {1};
+}
+
+}  // namespace
+
+void PushWrench(lua_State* L, const WrenchResult& result) {
+  RecordWriter(L, kWrenchResult)
+      .Set("feasible", result.feasible())
+      .Set("closed", result.closed)
+      .Set("margin", result.margin)
+      .Set("min_normal", result.min_normal)
+      .Set("forces", result.forces)
+      .Set("status", WrenchStatusName(result.status))
+      .Set("residual", result.residual);
+}
+
+void PushTransform(lua_State* L, const RigidTransform& X) {
+  RecordWriter(L, kTransform).Set("p", Vector3(X.translation())).Set("q", Quaternion(X.linear()));
+}
+
+void PushJoints(lua_State* L, const HandJoints& q) {
   RecordWriter joints(L, JointSchema());
-  for (int j = 0; j < kNumHandJoints; ++j) joints.Set(kHandJointNames[j], double(result.q[j]));
-  const int q = lua_gettop(L);
-  RecordWriter(L, kTransform)
-      .Set("p", Vector3(result.X_WH.translation()))
-      .Set("q", Quaternion(result.X_WH.linear()));
-  const int X_WH = lua_gettop(L);
+  for (int j = 0; j < kNumHandJoints; ++j) joints.Set(kHandJointNames[j], double(q[j]));
+}
+
+void PushIk(lua_State* L, const IkResult& result) {
   RecordWriter record(L, kIkResult);
   record.Set("status", IkStatusName(result.status))
       .Set("solved", result.solved())
@@ -161,14 +174,22 @@ Pushed Ik(lua_State* L, IkOptions& options) {
       .Set("clearance", result.clearance)
       .Set("starts", result.starts)
       .Set("method", IkMethodName(result.method));
-  lua_pushvalue(L, q);
+  PushJoints(L, result.q);
   record.SetTop("q");
-  lua_pushvalue(L, X_WH);
+  PushTransform(L, result.X_WH);
   record.SetTop("X_WH");
-  return {1};
 }
 
-}  // namespace
+void PushGraspContacts(lua_State* L, const std::vector<GraspContact>& contacts) {
+  lua_createtable(L, static_cast<int>(contacts.size()), 0);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    RecordWriter(L, kGraspContact)
+        .Set("finger", contacts[i].finger)
+        .Set("p_OC", contacts[i].p_OC)
+        .Set("nhat_O", contacts[i].nhat_O);
+    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  }
+}
 
 const std::vector<FunctionInfo>& GraspFunctions() {
   static const std::vector<FunctionInfo> functions = {Function<&Wrench>("wrench", "options"),
@@ -177,8 +198,8 @@ const std::vector<FunctionInfo>& GraspFunctions() {
 }
 
 std::vector<const Schema*> GraspSchemas() {
-  return {&kWrenchOptions, &kWrenchResult, &kIkOptions, &kIkContacts,
-          &kIkContact,     &kTransform,    &kIkResult,  &JointSchema()};
+  return {&kWrenchOptions, &kWrenchResult, &kIkOptions,    &kIkContacts,  &kIkContact,
+          &kTransform,     &kIkResult,     &JointSchema(), &kGraspContact};
 }
 
 }  // namespace pregrasp

@@ -7,6 +7,7 @@
 
 #include "app/core/text.h"
 #include "app/geometry/contact_mesh.h"
+#include "bindings/lua_planner.h"
 #include "bindings/lua_scene.h"
 #include "bindings/script.h"
 
@@ -36,7 +37,9 @@ struct Overlay {
 constexpr Overlay kOverlays[] = {
     {"forces", &PictureConfig::forces},     {"cones", &PictureConfig::cones},
     {"contacts", &PictureConfig::contacts}, {"ghost", &PictureConfig::ghost},
-    {"fingers", &PictureConfig::fingers},   {"axes", &PictureConfig::axes}};
+    {"fingers", &PictureConfig::fingers},   {"axes", &PictureConfig::axes},
+    {"mesh", &PictureConfig::mesh},         {"scores", &PictureConfig::scores},
+    {"rollouts", &PictureConfig::rollouts}, {"hand", &PictureConfig::hand}};
 
 void ReadOverlays(const std::vector<std::string>& names, PictureConfig& config) {
   for (const Overlay& overlay : kOverlays) config.*overlay.flag = false;
@@ -44,8 +47,12 @@ void ReadOverlays(const std::vector<std::string>& names, PictureConfig& config) 
     const auto found = std::find_if(std::begin(kOverlays), std::end(kOverlays),
                                     [&](const Overlay& overlay) { return name == overlay.name; });
     if (found == std::end(kOverlays)) {
-      throw InputError("", "overlay", "some of forces, cones, contacts, ghost, fingers and axes",
-                       '"' + name + '"');
+      std::string all;
+      for (const Overlay& overlay : kOverlays) {
+        if (!all.empty()) all += ", ";
+        all += overlay.name;
+      }
+      throw InputError("", "overlay", "some of " + all, '"' + name + '"');
     }
     config.*found->flag = true;
   }
@@ -61,33 +68,33 @@ RenderQuality ParseQuality(const std::string& text) {
 }  // namespace
 
 ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
-  const Fields fields(L, index, kShotOptions);
+  const Fields fields(L, index, kShotOptions, "", "", 1);
   ShotOptions options;
-  options.caption = fields.Optional<std::string>("caption", "");
+  PictureConfig& picture = options.shot.config;
+  options.shot.title = fields.Positional<std::optional<std::string>>(1, "title").value_or("");
+  options.shot.caption = fields.Optional<std::string>("caption", "");
   options.file = fields.Find<std::string>("file");
-  if (fields.Has("camera")) options.picture.camera = ReadCamera(L, fields, "camera");
+  if (fields.Has("camera")) picture.camera = ReadCamera(L, fields, "camera");
   if (const auto size = fields.Find<std::vector<int>>("size")) {
     if (size->size() != 2) fields.Refuse("size", "{width, height} in pixels");
-    options.picture.width = (*size)[0];
-    options.picture.height = (*size)[1];
+    picture.width = (*size)[0];
+    picture.height = (*size)[1];
   }
   if (const auto quality = fields.Find<std::string>("quality")) {
-    options.picture.quality = ParseQuality(*quality);
+    picture.quality = ParseQuality(*quality);
   }
   if (const auto overlays = fields.Find<std::vector<std::string>>("overlay")) {
-    ReadOverlays(*overlays, options.picture);
+    ReadOverlays(*overlays, picture);
   }
   return options;
 }
 
-void TakeShot(lua_State* L, Session& session, const Simulation* simulation,
-              const ShotOptions& options) {
+void TakeShot(lua_State* L, Session& session, const JournalStep& step, const ShotOptions& options) {
   if (options.file) {
-    const FileAccess& files = Machine::Of(L).files();
-    session.ShootToFile(simulation, options.picture, options.caption,
-                        files.ResolveForWriting(*options.file));
+    session.ShootToFile(step, options.shot,
+                        Machine::Of(L).files().ResolveForWriting(*options.file));
   } else {
-    session.Shoot(simulation, options.picture, options.caption);
+    session.Shoot(step, options.shot);
   }
 }
 
@@ -202,7 +209,7 @@ std::string SessionSave(lua_State* L, Session& session, const std::optional<std:
 }
 
 void SessionShot(lua_State* L, Session& session, const ShotOptions& options) {
-  TakeShot(L, session, nullptr, options);
+  TakeShot(L, session, session.last_step(), options);
 }
 
 Pushed SessionBody(lua_State* L, Session& session, const std::string& name) {
@@ -260,6 +267,7 @@ const ClassInfo& SessionClass() {
                                   Method<&SessionCloud>("cloud", "options"),
                                   Method<&PushDistance>("distance", "point"),
                                   Method<&SessionMesh>("mesh", "options"),
+                                  Method<&SessionGraph>("graph", "options"),
                               },
                               {
                                   Property<&SessionName>("name"),

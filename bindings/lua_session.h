@@ -27,8 +27,7 @@ struct LuaClass<LuaSimulation> {
 
 /// What shot{..} takes.
 struct ShotOptions {
-  PictureConfig picture;
-  std::string caption;
+  JournalStep::Shot shot;
   std::optional<std::string> file;
 };
 template <>
@@ -36,9 +35,8 @@ struct LuaValue<ShotOptions> {
   static ShotOptions Read(lua_State* L, int index, const std::string& path);
 };
 
-/// Takes the picture. @param simulation  null for the session's last step.
-void TakeShot(lua_State* L, Session& session, const Simulation* simulation,
-              const ShotOptions& options);
+/// Takes the picture of a step, for the run or for a file of its own.
+void TakeShot(lua_State* L, Session& session, const JournalStep& step, const ShotOptions& options);
 
 /// Pushes where a body is and how it moves. @param index  of the scene.
 void PushBody(lua_State* L, const World& world, const WorldState& state, int index);
@@ -56,6 +54,7 @@ std::vector<const Schema*> GeometrySchemas();
 // The geometry calls of a session.
 Pushed PushCloud(lua_State* L, Session& session, int points);
 Pushed PushDistance(lua_State* L, Session& session, const Vector3& p_W);
+void PushMesh(lua_State* L, const TriangleMesh& mesh);
 Pushed PushContactMesh(lua_State* L, Session& session, int triangles);
 
 }  // namespace pregrasp

@@ -120,7 +120,7 @@ Pushed SimFork(lua_State* L, LuaSimulation& sim) {
 }
 
 void SimShot(lua_State* L, LuaSimulation& sim, const ShotOptions& options) {
-  TakeShot(L, *sim.session, sim.simulation.get(), options);
+  TakeShot(L, *sim.session, sim.session->StepOf(*sim.simulation), options);
 }
 
 Pushed SimBody(lua_State* L, LuaSimulation& sim, const std::string& name) {

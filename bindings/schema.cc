@@ -36,6 +36,15 @@ int RefuseNewField(lua_State* L) {
 
 // Upvalues: methods by name, properties by name, the class.
 int ReadMember(lua_State* L) {
+  if (lua_isinteger(L, 2) != 0) {
+    const auto& info = *static_cast<const ClassInfo*>(lua_touserdata(L, lua_upvalueindex(3)));
+    if (info.item != nullptr) {
+      PushFunction(L, *info.item);
+      lua_insert(L, 1);
+      lua_call(L, 2, 1);
+      return 1;
+    }
+  }
   lua_pushvalue(L, 2);
   if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) return 1;
   lua_pushvalue(L, 2);

@@ -27,7 +27,8 @@ struct ClassInfo {
   std::string name;
   std::vector<FunctionInfo> methods;
   std::vector<FunctionInfo> properties;
-  lua_CFunction to_string = nullptr;  ///< null: the class's name
+  lua_CFunction to_string = nullptr;   ///< null: the class's name
+  const FunctionInfo* item = nullptr;  ///< what x[number] gives; null: nothing
 };
 
 /// "unknown key "fricton" (did you mean "friction"?)", or with all legal keys when none is near.

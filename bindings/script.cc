@@ -8,6 +8,7 @@
 #include "app/core/text.h"
 #include "app/recording/build_info.h"
 #include "bindings/lua_grasp.h"
+#include "bindings/lua_planner.h"
 #include "bindings/lua_scene.h"
 #include "bindings/lua_session.h"
 #include "bindings/sandbox.h"
@@ -130,9 +131,12 @@ Api MakeApi() {
   api.module = &module;
   api.classes = {&SessionClass(), &SimulationClass()};
   for (const ClassInfo* scene_class : SceneClasses()) api.classes.push_back(scene_class);
+  for (const ClassInfo* stage : PlannerClasses()) api.classes.push_back(stage);
   api.schemas = {&kOpenOptions};
   for (const auto& schemas :
-       {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas(), GraspSchemas()}) {
+       {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas(), GraspSchemas(),
+        StageOptionSchemas(), GraphSchemas(), TrajectorySchemas(), GraspStageSchemas(),
+        MotionSchemas()}) {
     api.schemas.insert(api.schemas.end(), schemas.begin(), schemas.end());
   }
   return api;
@@ -161,7 +165,7 @@ ScriptContext& ScriptContext::Of(lua_State* L) {
 }
 
 ScriptMachine::ScriptMachine(const ScriptConfig& config)
-    : context_{config, {}}, machine_(config.machine) {
+    : context_{config, {}, {}}, machine_(config.machine) {
   machine_.files().AllowProgramFiles(DataFolder());
   machine_.files().SetOutput(config.output);
   lua_State* L = machine_.state();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,13 +15,16 @@
 
 namespace pregrasp {
 
+struct Planning;
+
 /// What the command line gives to a script.
 struct ScriptConfig {
   MachineConfig machine;
   int threads = 0;
   std::optional<PictureMode> pictures;
   std::filesystem::path output = "out";
-  std::string remake;  ///< the command line itself, for the footer of pictures
+  std::filesystem::path weights;  ///< of the networks; empty for the program's own
+  std::string remake;             ///< the command line itself, for the footer of pictures
 };
 
 /// "none", "key" or "all". @throws InputError naming `where` and `field`.
@@ -39,6 +43,8 @@ struct ScriptContext {
   /// Held until the end of the script, so that a recording is finished even if the script lets go
   /// of its session.
   std::vector<std::shared_ptr<Session>> recording;
+  /// What the planner's stages of a session share, while one of them is held.
+  std::map<const Session*, std::weak_ptr<Planning>> planning;
 
   static ScriptContext& Of(lua_State* L);
 };

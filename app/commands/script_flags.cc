@@ -12,6 +12,7 @@ void ScriptFlags::AddTo(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--threads", config.threads, "Threads; 0 is one per processor")
       ->capture_default_str();
+  command.add_option("--weights", config.weights, "Folder of the networks' weights");
   command.add_option("--pictures", pictures,
                      "none, key or all: overrules what the script asks for");
 }

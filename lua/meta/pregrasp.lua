@@ -8,6 +8,7 @@
 
 ---@alias Vector3 number[] {x, y, z}
 ---@alias FingerName "thumb"|"index"|"middle"|"ring"|"little"
+---@alias Overlay "forces"|"cones"|"contacts"|"ghost"|"fingers"|"axes"|"mesh"|"scores"|"rollouts"|"hand"
 
 ---@class pregrasp
 ---@field version string the program's version
@@ -164,12 +165,12 @@ function Session:record(options) end
 ---@param options? ShotOptions
 function Session:shot(options) end
 
----@class ShotOptions
+---@class ShotOptions the first entry, if there is one, is the picture's title
 ---@field caption? string in place of what happened and why
 ---@field camera? CameraTable
 ---@field size? integer[] {1280, 720} pixels
 ---@field quality? "draft"|"normal"|"still" "still"
----@field overlay? ("forces"|"cones"|"contacts"|"ghost"|"fingers"|"axes")[] all of them
+---@field overlay? Overlay[] all of them
 ---@field file? string "out/..": drawn now, outside of the run directory
 
 ---Writes the run directory with all steps so far: at `dir`, or the one that is recorded to.
@@ -226,6 +227,426 @@ function Session:mesh(options) end
 ---@field num_triangles integer
 ---@field vertices Vector3[] [m]
 ---@field triangles integer[][] three vertices each, from 1, counter-clockwise from outside
+
+---The contact graph, meshed: the first of the planner's stages. Its settings hold for the later ones.
+---@param options? GraphOptions
+---@return Graph
+function Session:graph(options) end
+
+---@class GraphOptions
+---@field points? integer of the object's cloud, 512; the same for all graphs of a session
+---@field triangles? integer of the contact mesh, 40
+---@field convex_share? number from which share of its hull's volume on a shape is meshed by its hull
+---@field samples? integer placements a node for each of thumb, index and both, 5
+---@field top_percent? number nodes kept by each score, 5
+---@field min_tip_distance? number two tips closer than this score 0 [m], 0.015
+
+-- The planner, stage by stage. Each object is a stepper: what it was before each step is kept, and back()
+-- goes there exactly. A step has an id, which is on its picture, in the log and here. Numbers of nodes
+-- and triangles are those of pictures and log, from 0: triangle t is mesh.triangles[t + 1].
+
+---@class Graph
+---@field stage "meshed"|"scored"|"pruned_context"|"pruned_free"|"connected"
+---@field step_id string
+---@field num_triangles integer
+---@field num_nodes integer ordered pairs of triangles: thumb, index
+---@field num_edges integer 0 before it is connected
+---@field top_percent number
+---@field initial integer[] ids of the nodes that a path may begin with
+---@field kept integer[] ids of all kept nodes
+---@field mesh Mesh
+local Graph = {}
+
+---Scores every node: s_c among the surroundings at the start, s_n without them.
+function Graph:score() end
+
+---The pruning steps that are still to do.
+---@param options? PruneOptions
+function Graph:prune(options) end
+
+---@class PruneOptions
+---@field top_percent? number instead of the graph's
+
+---One of three steps: the best by s_c stay, the best by s_n stay, edges are built.
+---@return boolean # false when there is none left
+function Graph:prune_step() end
+
+---Why a node is there: a sentence when printed, and the numbers that decided.
+---@param id integer
+---@return Reason
+function Graph:why(id) end
+
+---The same, for a node that is not there.
+---@param id integer
+---@return Reason
+function Graph:why_not(id) end
+
+---One node.
+---@param id integer
+---@return ContactState
+function Graph:node(id) end
+
+---The best nodes by s_c.
+---@param count? integer 10
+---@return ContactState[]
+function Graph:top(count) end
+
+---Kept nodes that share a triangle with a kept node, itself included.
+---@param id integer
+---@return integer[] ids
+function Graph:neighbors(id) end
+
+---All paths of contact states, best first, each found when it is asked for.
+---@param options? PathsOptions
+---@return Paths
+function Graph:paths(options) end
+
+---@class PathsOptions
+---@field stages? integer contact states in a path, 2
+
+---Takes steps back.
+---@param steps? integer 1
+function Graph:back(steps) end
+
+---A copy with the same past.
+---@return Graph
+function Graph:fork() end
+
+---A picture of its last step.
+---@param options? ShotOptions
+function Graph:shot(options) end
+
+---A node of the graph: the thumb somewhere on one triangle, the index finger on another, or the same.
+---@class ContactState
+---@field id integer
+---@field thumb integer triangle
+---@field index integer triangle
+---@field s_c number score among the surroundings, mean of its placements, 0 to 1
+---@field s_n number score without surroundings
+---@field rank_c integer 1 is the best by s_c
+---@field rank_n integer the same by s_n
+---@field occluded number share of its contacts where no fingertip can be
+---@field initial boolean may begin a path
+---@field kept boolean
+
+---@class Reason
+---@field text string the sentence
+---@field verdict "not_scored"|"kept_by_context"|"kept_by_free"|"kept_by_both"|"pruned"
+---@field kept boolean
+---@field id integer
+---@field node ContactState
+---@field threshold_c number the lowest s_c that was kept
+---@field threshold_n number the lowest s_n that was kept
+---@field num_nodes integer
+---@field num_kept_each integer how many the top percent are
+
+---Paths by rank: paths[1] is the best; nil beyond the last.
+---@class Paths
+---@field count number how many there are
+---@field stages integer
+local Paths = {}
+
+---The best path that next() has not given yet; nil after the last.
+---@return Path?
+function Paths:next() end
+
+---The best `count` paths; next() is not changed.
+---@param count integer
+---@return Path[]
+function Paths:top(count) end
+
+---@class Path
+---@field rank integer 1 is the best
+---@field score number s_c of the first node and s_n of the others
+---@field terms number[] its summands
+---@field nodes ContactState[]
+---@field siblings Sibling[] the best five of the paths that it beat by its last node
+---@field step_id string "" before next() or shot{} recorded it
+local Path = {}
+
+---Starts the optimisation of a trajectory along the path (MPPI). Nothing is done before step().
+---@param options? OptimizeOptions
+---@return Optimizer
+function Path:optimize(options) end
+
+---@class OptimizeOptions
+---@field samples? integer rollouts an iteration, 48
+---@field iterations? integer at most, 15
+---@field sigma? number standard deviation of the noise in the first iteration, 0.8
+---@field final_sigma? number and in the last, 0.3
+---@field temperature? number lambda over the standard deviation of the costs, 0.3
+---@field patience? integer iterations without progress after which it has converged, 4
+---@field progress? number what counts as progress, 0.01
+---@field max_travel? number of a target in a knot, each axis [m], 0.03
+---@field stage_seconds? number of one contact stage, 0.8
+---@field knots? integer force targets a stage, 4; a fork keeps it
+---@field hold_seconds? number the last targets are held before the last score, 1
+---@field no_contact? number weight: no finger ever touches, 0.5
+---@field slip? number weight: share of the contact time at the cone's limit, 0.25
+---@field effort? number weight: mean force over the largest one allowed, 0.1
+---@field unrest? number weight: speed when the hold ends, 0.3
+---@field speed? number weight: peak speed above 0.35 m/s, 0.8
+---@field tip_overlap? number weight: share of the time with a fingertip in the surroundings, 1
+---@field tip_spacing? number weight: tips nearer than 15 mm, 0.5
+---@field fall? number weight: the object fell out of the scene, 1.5
+
+---A picture of the path on the contact mesh.
+---@param options? ShotOptions
+function Path:shot(options) end
+
+---@class Sibling
+---@field nodes integer[] ids
+---@field score number
+---@field behind number by how much it lost
+
+---@class Optimizer
+---@field iteration integer iterations done
+---@field best_cost number? of all iterations; nil before the first
+---@field mean_cost number? of the last iteration's rollouts
+---@field best CostTerms of the best plan so far
+---@field converged boolean
+---@field best_history number[] best_cost after each iteration
+---@field mean_history number[]
+---@field path_rank integer
+---@field step_id string
+local Optimizer = {}
+
+---One iteration.
+---@return boolean # false, and nothing done, when it has converged
+function Optimizer:step() end
+
+---Takes iterations back.
+---@param steps? integer 1
+function Optimizer:back(steps) end
+
+---A copy with the same past that goes on with other settings.
+---@param options? OptimizeOptions
+---@return Optimizer
+function Optimizer:fork(options) end
+
+---The plans of the last iteration: the first is the mean, the second the best so far.
+---@return Rollout[]
+function Optimizer:rollouts() end
+
+---The best plan simulated through the full Simbody model, and again at half the time step.
+---@param options? CertifyOptions
+---@return Trajectory
+function Optimizer:certify(options) end
+
+---@class CertifyOptions
+---@field hold_seconds? number the last targets are kept this long, 1.5
+---@field max_hold_shift? number the object may move this far in the hold [m], 0.01
+---@field max_hold_turn_deg? number and turn this far, 5
+
+---A picture of the last iteration: where its best plans leave the object.
+---@param options? ShotOptions
+function Optimizer:shot(options) end
+
+---A plan's cost: minus its scores, plus penalties that are zero for a plan that does nothing wrong.
+---@class CostTerms
+---@field total number
+---@field stage_scores number[] at the start of each stage
+---@field final_score number after the hold
+---@field no_contact number
+---@field slip number
+---@field effort number
+---@field unrest number
+---@field speed number
+---@field tip_overlap number
+---@field tip_spacing number
+---@field fall number
+
+---@class Rollout
+---@field cost number
+---@field weight number in the new mean
+---@field terms CostTerms
+---@field X_WO Transform where the object ends
+
+---@class Trajectory
+---@field certified boolean
+---@field reasons string[] why not; empty if it is
+---@field hold_shift_mm number how far the object moves in the hold
+---@field hold_turn_deg number
+---@field step_shift_mm number between the final positions at the full and at half the time step
+---@field step_turn_deg number
+---@field max_penetration_mm number between bodies
+---@field max_tip_overlap_mm number of a fingertip with the surroundings
+---@field max_speed number of the object [m/s]
+---@field max_force_N number of a finger
+---@field seconds number simulated
+---@field num_steps integer
+---@field stays_when_released boolean under 10 mm and 5 degrees in 1 s without fingers
+---@field released_shift_mm number
+---@field released_turn_deg number
+---@field pressing GraspContact[] that press at its end; every grasp keeps them unless the object stays without
+---@field stages PlanStage[] what the fingers do
+---@field object Body at its end
+---@field step_id string
+local Trajectory = {}
+
+---Generated grasps at the trajectory's end, each refined and tested.
+---@param options? GraspsOptions
+---@return Grasps
+function Trajectory:grasps(options) end
+
+---@class GraspsOptions
+---@field samples? integer 20
+---@field points? integer places a finger that are scored, for what the generator is to complete, 400
+---@field pairs? integer placements of both fingers that are scored, 4000
+---@field spacing? number by which the placements of two samples differ somewhere [m], 0.01
+---@field f_min? number smallest normal force of every finger [N], 0.5
+---@field may_drop? boolean ring and little may be left out, true
+---@field max_refinement? number how far a contact may be moved [m], 0.01
+---@field max_refinements? integer moved sets drawn for a sample, 60
+---@field max_solves? integer of those, put to inverse kinematics, 8
+---@field starts? integer restarts of inverse kinematics, 20
+
+---A body at its end.
+---@param name string
+---@return Body
+function Trajectory:body(name) end
+
+---A picture of its end.
+---@param options? ShotOptions
+function Trajectory:shot(options) end
+
+---@class PlanStage
+---@field thumb PlanFinger
+---@field index PlanFinger
+
+---@class PlanFinger
+---@field on boolean
+---@field kept boolean it was on in the stage before, and keeps its contact
+---@field p_OC Vector3 contact point in the object's frame
+---@field nhat_O Vector3 outward normal there
+---@field p_WTargets Vector3[] where its spring pulls at the end of each knot
+
+---@class GraspContact
+---@field finger FingerName
+---@field p_OC Vector3 in the object's frame
+---@field nhat_O Vector3 outward normal there
+
+---The grasps by sample: grasps[1] is the first; nil beyond the last.
+---@class Grasps
+---@field count integer
+---@field num_feasible integer
+---@field r_suc number share that is feasible, with refinement
+---@field r_suc_raw number and without
+local Grasps = {}
+
+---For a loop: for i, grasp in grasps:all() do .. end.
+---@return fun(): integer, Grasp
+function Grasps:all() end
+
+---The feasible grasp that lifts the object, then the one with most room in its forces; nil without any.
+---@return Grasp?
+function Grasps:best() end
+
+---@class Grasp
+---@field feasible boolean
+---@field reason string "feasible", or the first demand that cannot be met
+---@field raw_reason string the same without refinement
+---@field text string a sentence: which fingers, and what stands in the way
+---@field sample integer
+---@field fingers FingerName[]
+---@field contacts GraspContact[]
+---@field moved_mm number the farthest a contact was moved by refinement
+---@field refinements integer sets tried
+---@field wrench WrenchResult? forces in the object's frame; nil if they were not tested
+---@field ik IkResult? nil if the forces failed already
+---@field lift Lift? nil unless it is feasible
+---@field step_id string
+local Grasp = {}
+
+---The hand motion that ends in this grasp. Nothing is solved before it is asked for.
+---@param options? MotionOptions
+---@return Motion
+function Grasp:motion(options) end
+
+---@class MotionOptions
+---@field order? "reverse"|"forward" of keyframes, "reverse": the last first
+---@field fps? number 30
+---@field approach_seconds? number 1.2
+---@field closing_seconds? number 1
+---@field lift_seconds? number 1.2
+---@field lift_height? number [m], 0.1
+---@field approach_distance? number how far off the palm starts [m], 0.2
+---@field keyframe_starts? integer restarts of inverse kinematics at a keyframe, 25
+---@field frame_starts? integer and in between, 4
+---@field smoothing_sweeps? integer 6
+
+---A picture of the hand in it.
+---@param options? ShotOptions
+function Grasp:shot(options) end
+
+---@class Lift
+---@field held boolean the object follows within 10 mm and 15 degrees
+---@field height number how far it came [m]
+---@field shift number from where it should be [m]
+---@field turn_deg number
+---@field slip_mm number the farthest that a fingertip slid
+---@field direction_W Vector3 nearest to up in which it can leave
+
+---@class Motion
+---@field finished boolean
+---@field num_keyframes integer
+---@field num_solved integer of them
+---@field num_frames integer
+---@field order "reverse"|"forward"
+---@field summary MotionSummary? nil before it is finished
+---@field step_id string
+local Motion = {}
+
+---For a loop over keyframes in the order of solving, each solved when its turn comes.
+---@return fun(): Frame
+function Motion:keyframes() end
+
+---For a loop over all frames in time; finishes the motion first.
+---@return fun(): Frame
+function Motion:frames() end
+
+---Solves the next keyframe.
+---@return boolean # false when all are solved
+function Motion:step() end
+
+---Keyframes that are left, in-betweens, smoothing.
+function Motion:finish() end
+
+---Takes keyframes back, or the finish.
+---@param steps? integer 1
+function Motion:back(steps) end
+
+---A picture of the last step.
+---@param options? ShotOptions
+function Motion:shot(options) end
+
+---@class MotionSummary
+---@field frames integer
+---@field failed integer without a solution
+---@field loosened integer that gave something up
+---@field max_tip_error_mm number
+---@field min_clearance_mm number
+---@field max_joint_speed number [rad/s]
+---@field max_wrist_speed number [m/s]
+
+---@class Frame
+---@field number integer from 1, in time
+---@field t number [s]
+---@field phase string "approach", "contact", "closing" or "lift"
+---@field loosened string what it gave up: "none", or the rung of the ladder
+---@field failed boolean
+---@field tip_error_mm number of the worst fingertip
+---@field clearance_mm number
+---@field X_WH Transform of the palm
+---@field q HandJoints
+---@field X_WO Transform of the object
+---@field touching FingerName[]
+---@field step_id string
+local Frame = {}
+
+---A picture of it.
+---@param options? ShotOptions
+function Frame:shot(options) end
 
 -- A simulation, stepped by hand. Each call that changes it is a step "sim.N" of the session's journal. --
 

@@ -249,8 +249,7 @@ TEST(SessionBindingTest, WrongCallsSayWhatWasExpected) {
       {"open():shot{ quality = 'best' }",
        "shot: quality: expected \"draft\", \"normal\" or \"still\", got \"best\""},
       {"open():shot{ overlay = {'force'} }",
-       "shot: overlay: expected some of forces, cones, contacts, ghost, fingers and axes, got "
-       "\"force\""},
+       "shot: overlay: expected some of forces, cones, contacts, ghost, fingers, axes, mesh, "},
       {"open():shot{ size = {1, 2, 3} }",
        "shot: size: expected {width, height} in pixels, got a table"},
       {"open():save()", "save: dir: expected a folder, as nothing is recorded, got nothing"},

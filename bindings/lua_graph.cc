@@ -1,0 +1,465 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/pipeline/describe_plan.h"
+#include "bindings/lua_planner.h"
+
+namespace pregrasp {
+namespace {
+
+const Schema kContactState{
+    "ContactState",
+    {"id", "thumb", "index", "s_c", "s_n", "rank_c", "rank_n", "occluded", "initial", "kept"}};
+const Schema kSibling{"Sibling", {"nodes", "score", "behind"}};
+
+constexpr int kGraphKib = 300;
+constexpr int kMostPaths = 100000;  // that top(n) lists
+constexpr int kSiblings = 5;
+
+const char* StageName(GraphStage stage) {
+  switch (stage) {
+    case GraphStage::kMeshed:
+      return "meshed";
+    case GraphStage::kScored:
+      return "scored";
+    case GraphStage::kPrunedContext:
+      return "pruned_context";
+    case GraphStage::kPrunedFree:
+      return "pruned_free";
+    case GraphStage::kConnected:
+      return "connected";
+  }
+  return "";
+}
+
+const char* VerdictName(NodeReason::Verdict verdict) {
+  switch (verdict) {
+    case NodeReason::Verdict::kNotScored:
+      return "not_scored";
+    case NodeReason::Verdict::kKeptByContext:
+      return "kept_by_context";
+    case NodeReason::Verdict::kKeptByFree:
+      return "kept_by_free";
+    case NodeReason::Verdict::kKeptByBoth:
+      return "kept_by_both";
+    case NodeReason::Verdict::kPruned:
+      return "pruned";
+  }
+  return "";
+}
+
+void PushNode(lua_State* L, const ContactNode& node) {
+  RecordWriter(L, kContactState)
+      .Set("id", node.id)
+      .Set("thumb", node.thumb)
+      .Set("index", node.index)
+      .Set("s_c", node.s_c)
+      .Set("s_n", node.s_n)
+      .Set("rank_c", node.rank_c)
+      .Set("rank_n", node.rank_n)
+      .Set("occluded", node.occluded)
+      .Set("initial", node.initial)
+      .Set("kept", node.kept);
+}
+
+void RequireScores(const ContactGraph& graph) {
+  if (graph.stage() == GraphStage::kMeshed)
+    throw InputError("", "", "a graph with scores", "one without: call score() first");
+}
+
+// Methods of a graph.
+
+void Advance(lua_State* L, LuaGraph& graph, ContactGraph next,
+             void (PlanRecord::*add)(const ContactGraph&)) {
+  auto step =
+      graph.planning->Record(graph.config, [&](PlanRecord& record) { (record.*add)(next); });
+  graph.past.push_back(std::make_shared<const Moment<ContactGraph>>(
+      Moment<ContactGraph>{std::move(next), std::move(step)}));
+  CountMemory(L, kGraphKib);
+}
+
+void GraphScore(lua_State* L, LuaGraph& graph) {
+  if (graph.graph().stage() != GraphStage::kMeshed) {
+    throw InputError("", "", "a graph without scores", "one that has them");
+  }
+  ContactGraph next = graph.graph();
+  graph.planning->record.Time("graph", [&] { graph.planning->planner.ScoreGraph(next); });
+  Advance(L, graph, std::move(next), &PlanRecord::AddScores);
+}
+
+bool GraphPruneStep(lua_State* L, LuaGraph& graph) {
+  RequireScores(graph.graph());
+  ContactGraph next = graph.graph();
+  switch (next.stage()) {
+    case GraphStage::kScored:
+      next.PruneByContext();
+      break;
+    case GraphStage::kPrunedContext:
+      next.PruneByFree();
+      break;
+    case GraphStage::kPrunedFree:
+      next.Connect();
+      break;
+    default:
+      return false;
+  }
+  Advance(L, graph, std::move(next), &PlanRecord::AddPruning);
+  return true;
+}
+
+void GraphPrune(lua_State* L, LuaGraph& graph, const PruneOptions& options) {
+  RequireScores(graph.graph());
+  if (!options.fields.empty()) {
+    PlannerConfig config = graph.config;
+    options.ApplyTo(config);
+    ContactGraph next = graph.graph();
+    next.SetTopPercent(config.graph.top_percent);
+    graph.config = config;
+    // The same moment with another setting: not one to go back to.
+    graph.past.back() = std::make_shared<const Moment<ContactGraph>>(
+        Moment<ContactGraph>{std::move(next), graph.past.back()->step});
+  }
+  while (GraphPruneStep(L, graph)) {
+  }
+}
+
+void GraphBack(LuaGraph& graph, const std::optional<int>& steps) {
+  GoBack(graph.past, steps.value_or(1));
+}
+
+Pushed GraphFork(lua_State* L, LuaGraph& graph) {
+  PushObject(L, std::make_shared<LuaGraph>(graph));
+  return {1};
+}
+
+Pushed GraphWhy(lua_State* L, LuaGraph& graph, int id) {
+  PushObject(L, std::make_shared<LuaReason>(LuaReason{graph.graph().Why(id)}));
+  return {1};
+}
+
+Pushed GraphNode(lua_State* L, LuaGraph& graph, int id) {
+  PushNode(L, graph.graph().Why(id).node);
+  return {1};
+}
+
+Pushed GraphTop(lua_State* L, LuaGraph& graph, const std::optional<int>& count) {
+  RequireScores(graph.graph());
+  std::vector<ContactNode> nodes = graph.graph().nodes();
+  std::sort(nodes.begin(), nodes.end(),
+            [](const ContactNode& a, const ContactNode& b) { return a.rank_c < b.rank_c; });
+  const int shown = std::clamp(count.value_or(10), 0, static_cast<int>(nodes.size()));
+  lua_createtable(L, shown, 0);
+  for (int i = 0; i < shown; ++i) {
+    PushNode(L, nodes[static_cast<std::size_t>(i)]);
+    lua_rawseti(L, -2, i + 1);
+  }
+  return {1};
+}
+
+std::vector<int> GraphNeighbors(LuaGraph& graph, int id) {
+  if (graph.graph().stage() != GraphStage::kConnected) {
+    throw InputError("", "", "a connected graph", "one before prune()");
+  }
+  return graph.graph().Why(id).node.kept ? graph.graph().neighbors(id) : std::vector<int>{};
+}
+
+Pushed GraphPaths(lua_State* L, LuaGraph& graph, const PathsOptions& options) {
+  PlannerConfig config = graph.config;
+  options.ApplyTo(config);
+  PushObject(L, std::make_shared<LuaPaths>(LuaPaths{graph.planning,
+                                                    config,
+                                                    graph.past.back(),
+                                                    PathSearch(graph.graph(), config.stages),
+                                                    {},
+                                                    0}));
+  CountMemory(L, 2 * kGraphKib);
+  return {1};
+}
+
+void GraphShot(lua_State* L, LuaGraph& graph, const ShotOptions& options) {
+  ShootStep(L, *graph.planning, graph.past.back()->step, options);
+}
+
+// Properties of a graph.
+
+std::string GraphStageName(LuaGraph& graph) { return StageName(graph.graph().stage()); }
+std::string GraphStepId(LuaGraph& graph) { return StepId(graph.past.back()->step); }
+int GraphTriangles(LuaGraph& graph) { return graph.graph().num_triangles(); }
+int GraphNodes(LuaGraph& graph) { return static_cast<int>(graph.graph().nodes().size()); }
+int GraphEdges(LuaGraph& graph) {
+  return graph.graph().stage() == GraphStage::kConnected ? graph.graph().num_edges() : 0;
+}
+double GraphTopPercent(LuaGraph& graph) { return graph.graph().config().top_percent; }
+std::vector<int> GraphKept(LuaGraph& graph) {
+  std::vector<int> kept;
+  for (const ContactNode& node : graph.graph().nodes()) {
+    if (node.kept) kept.push_back(node.id);
+  }
+  return kept;
+}
+std::vector<int> GraphInitial(LuaGraph& graph) {
+  std::vector<int> initial;
+  for (const ContactNode& node : graph.graph().nodes()) {
+    if (node.initial) initial.push_back(node.id);
+  }
+  return initial;
+}
+Pushed GraphMesh(lua_State* L, LuaGraph& graph) {
+  PushMesh(L, graph.graph().mesh());
+  return {1};
+}
+
+int GraphToString(lua_State* L) {
+  const auto graph = FindObject<LuaGraph>(L, 1);
+  const std::string text =
+      graph ? fmt::format("Graph({}, {} nodes)", StageName(graph->graph().stage()),
+                          graph->graph().nodes().size())
+            : "Graph";
+  lua_pushlstring(L, text.data(), text.size());
+  return 1;
+}
+
+// Properties of a reason.
+
+int ReasonId(LuaReason& why) { return why.reason.node.id; }
+Pushed ReasonNode(lua_State* L, LuaReason& why) {
+  PushNode(L, why.reason.node);
+  return {1};
+}
+std::string ReasonVerdict(LuaReason& why) { return VerdictName(why.reason.verdict); }
+bool ReasonKept(LuaReason& why) { return why.reason.node.kept; }
+int ReasonNumNodes(LuaReason& why) { return why.reason.num_nodes; }
+int ReasonNumKept(LuaReason& why) { return why.reason.num_kept_each; }
+double ReasonThresholdC(LuaReason& why) { return why.reason.threshold_c; }
+double ReasonThresholdN(LuaReason& why) { return why.reason.threshold_n; }
+std::string ReasonText(LuaReason& why) { return DescribeReason(why.reason); }
+
+int ReasonToString(lua_State* L) {
+  const auto why = FindObject<LuaReason>(L, 1);
+  const std::string text = why ? DescribeReason(why->reason) : "Reason";
+  lua_pushlstring(L, text.data(), text.size());
+  return 1;
+}
+
+// Paths.
+
+// Finds paths until there are `count`, or all.
+void FindPaths(LuaPaths& paths, std::size_t count) {
+  ContactPath path;
+  while (paths.found.size() < count && paths.search.Next(&path)) paths.found.push_back(path);
+}
+
+void PushPath(lua_State* L, const LuaPaths& paths, std::size_t i,
+              std::shared_ptr<const JournalStep> step = nullptr) {
+  PushObject(L, std::make_shared<LuaPath>(LuaPath{paths.planning, paths.config, paths.graph,
+                                                  paths.found[i], std::move(step)}));
+}
+
+std::shared_ptr<const JournalStep> RecordPath(Planning& planning, const PlannerConfig& config,
+                                              const ContactGraph& graph, const ContactPath& path) {
+  return planning.Record(config, [&](PlanRecord& record) { record.AddPath(graph, path); });
+}
+
+Pushed PathsNext(lua_State* L, LuaPaths& paths) {
+  FindPaths(paths, paths.next + 1);
+  if (paths.next == paths.found.size()) {
+    lua_pushnil(L);
+    return {1};
+  }
+  const std::size_t i = paths.next++;
+  PushPath(L, paths, i,
+           RecordPath(*paths.planning, paths.config, paths.graph->state, paths.found[i]));
+  return {1};
+}
+
+Pushed PathsTop(lua_State* L, LuaPaths& paths, int count) {
+  if (count < 0 || count > kMostPaths) {
+    throw InputError("", "count", "0 to 100000", std::to_string(count));
+  }
+  FindPaths(paths, static_cast<std::size_t>(count));
+  const std::size_t shown = std::min(paths.found.size(), static_cast<std::size_t>(count));
+  lua_createtable(L, static_cast<int>(shown), 0);
+  for (std::size_t i = 0; i < shown; ++i) {
+    PushPath(L, paths, i);
+    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  }
+  return {1};
+}
+
+// paths[i], from 1; nil beyond the last one.
+Pushed PathsItem(lua_State* L, LuaPaths& paths, int number) {
+  if (number < 1 || number > kMostPaths) {
+    throw InputError("", "number", "1 to 100000", std::to_string(number));
+  }
+  FindPaths(paths, static_cast<std::size_t>(number));
+  if (static_cast<std::size_t>(number) > paths.found.size()) {
+    lua_pushnil(L);
+  } else {
+    PushPath(L, paths, static_cast<std::size_t>(number) - 1);
+  }
+  return {1};
+}
+
+double PathsCount(LuaPaths& paths) { return paths.search.num_paths(); }
+int PathsStages(LuaPaths& paths) { return paths.config.stages; }
+
+int PathsToString(lua_State* L) {
+  const auto paths = FindObject<LuaPaths>(L, 1);
+  const std::string text = paths ? fmt::format("Paths({:.0f} of {} stages)",
+                                               paths->search.num_paths(), paths->config.stages)
+                                 : "Paths";
+  lua_pushlstring(L, text.data(), text.size());
+  return 1;
+}
+
+// One path.
+
+void PathShot(lua_State* L, LuaPath& path, const ShotOptions& options) {
+  if (!path.step) {
+    path.step = RecordPath(*path.planning, path.config, path.graph->state, path.path);
+  }
+  ShootStep(L, *path.planning, path.step, options);
+}
+
+int PathRank(LuaPath& path) { return path.path.rank; }
+double PathScore(LuaPath& path) { return path.path.score; }
+std::vector<double> PathTerms(LuaPath& path) { return path.path.terms; }
+std::string PathStepId(LuaPath& path) { return StepId(path.step); }
+Pushed PathNodes(lua_State* L, LuaPath& path) {
+  lua_createtable(L, static_cast<int>(path.path.nodes.size()), 0);
+  for (std::size_t i = 0; i < path.path.nodes.size(); ++i) {
+    PushNode(L, path.graph->state.nodes().at(static_cast<std::size_t>(path.path.nodes[i])));
+    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  }
+  return {1};
+}
+Pushed PathSiblings(lua_State* L, LuaPath& path) {
+  const std::vector<ContactPath> siblings = FindSiblings(path.graph->state, path.path, kSiblings);
+  lua_createtable(L, static_cast<int>(siblings.size()), 0);
+  for (std::size_t i = 0; i < siblings.size(); ++i) {
+    RecordWriter(L, kSibling)
+        .Set("nodes", siblings[i].nodes)
+        .Set("score", siblings[i].score)
+        .Set("behind", path.path.score - siblings[i].score);
+    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  }
+  return {1};
+}
+
+int PathToString(lua_State* L) {
+  const auto path = FindObject<LuaPath>(L, 1);
+  std::string text = "Path";
+  if (path) {
+    std::string nodes;
+    for (const int id : path->path.nodes)
+      nodes += fmt::format("{}{}", nodes.empty() ? "" : " > ", id);
+    text = fmt::format("Path(rank {}, {}, score {:.3f})", path->path.rank, nodes, path->path.score);
+  }
+  lua_pushlstring(L, text.data(), text.size());
+  return 1;
+}
+
+}  // namespace
+
+Pushed SessionGraph(lua_State* L, const std::shared_ptr<Session>& session,
+                    const GraphOptions& options) {
+  PlannerConfig config;
+  options.ApplyTo(config);
+  config.Validate();
+  auto planning = Planning::Of(L, session, config);
+  const Planner planner = planning->planner.WithConfig(config);
+  ContactGraph graph = planning->record.Time(
+      "geometry", [&] { return planner.BuildGraph(config.mesh, config.graph); });
+  const auto object = std::make_shared<LuaGraph>(LuaGraph{planning, config, {}});
+  Advance(L, *object, std::move(graph), &PlanRecord::AddMesh);
+  PushObject(L, object);
+  return {1};
+}
+
+const ClassInfo& GraphClass() {
+  static const ClassInfo info{"Graph",
+                              {
+                                  Method<&GraphScore>("score"),
+                                  Method<&GraphPrune>("prune", "options"),
+                                  Method<&GraphPruneStep>("prune_step"),
+                                  Method<&GraphWhy>("why", "id"),
+                                  Method<&GraphWhy>("why_not", "id"),
+                                  Method<&GraphNode>("node", "id"),
+                                  Method<&GraphTop>("top", "count"),
+                                  Method<&GraphNeighbors>("neighbors", "id"),
+                                  Method<&GraphPaths>("paths", "options"),
+                                  Method<&GraphBack>("back", "steps"),
+                                  Method<&GraphFork>("fork"),
+                                  Method<&GraphShot>("shot", "options"),
+                              },
+                              {
+                                  Property<&GraphStageName>("stage"),
+                                  Property<&GraphStepId>("step_id"),
+                                  Property<&GraphTriangles>("num_triangles"),
+                                  Property<&GraphNodes>("num_nodes"),
+                                  Property<&GraphEdges>("num_edges"),
+                                  Property<&GraphTopPercent>("top_percent"),
+                                  Property<&GraphInitial>("initial"),
+                                  Property<&GraphKept>("kept"),
+                                  Property<&GraphMesh>("mesh"),
+                              },
+                              GraphToString};
+  return info;
+}
+
+const ClassInfo& ReasonClass() {
+  static const ClassInfo info{"Reason",
+                              {},
+                              {
+                                  Property<&ReasonText>("text"),
+                                  Property<&ReasonVerdict>("verdict"),
+                                  Property<&ReasonKept>("kept"),
+                                  Property<&ReasonId>("id"),
+                                  Property<&ReasonNode>("node"),
+                                  Property<&ReasonThresholdC>("threshold_c"),
+                                  Property<&ReasonThresholdN>("threshold_n"),
+                                  Property<&ReasonNumNodes>("num_nodes"),
+                                  Property<&ReasonNumKept>("num_kept_each"),
+                              },
+                              ReasonToString};
+  return info;
+}
+
+const ClassInfo& PathsClass() {
+  static const FunctionInfo item = Method<&PathsItem>("[]", "number");
+  static const ClassInfo info{"Paths",
+                              {
+                                  Method<&PathsNext>("next"),
+                                  Method<&PathsTop>("top", "count"),
+                              },
+                              {
+                                  Property<&PathsCount>("count"),
+                                  Property<&PathsStages>("stages"),
+                              },
+                              PathsToString,
+                              &item};
+  return info;
+}
+
+const ClassInfo& PathClass() {
+  static const ClassInfo info{"Path",
+                              {
+                                  Method<&PathOptimize>("optimize", "options"),
+                                  Method<&PathShot>("shot", "options"),
+                              },
+                              {
+                                  Property<&PathRank>("rank"),
+                                  Property<&PathScore>("score"),
+                                  Property<&PathTerms>("terms"),
+                                  Property<&PathNodes>("nodes"),
+                                  Property<&PathSiblings>("siblings"),
+                                  Property<&PathStepId>("step_id"),
+                              },
+                              PathToString};
+  return info;
+}
+
+std::vector<const Schema*> GraphSchemas() { return {&kContactState, &kSibling}; }
+
+}  // namespace pregrasp

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/pipeline/planner_settings.h"
+#include "bindings/value.h"
+
+namespace pregrasp {
+
+/// Settings of a planner's stage as a script gives them: a key is the last part of the field's name
+/// ("samples" of "mppi.samples").
+struct StageOptions {
+  std::vector<std::pair<std::string, FieldValue>> fields;  ///< full names
+
+  /// @throws InputError for a value that does not fit.
+  void ApplyTo(PlannerConfig& config) const;
+};
+
+struct GraphOptions : StageOptions {};
+struct PruneOptions : StageOptions {};
+struct PathsOptions : StageOptions {};
+struct OptimizeOptions : StageOptions {};
+struct CertifyOptions : StageOptions {};
+struct GraspsOptions : StageOptions {};
+struct MotionOptions : StageOptions {};
+
+template <>
+struct LuaValue<GraphOptions> {
+  static GraphOptions Read(lua_State* L, int index, const std::string& path);
+};
+template <>
+struct LuaValue<PruneOptions> {
+  static PruneOptions Read(lua_State* L, int index, const std::string& path);
+};
+template <>
+struct LuaValue<PathsOptions> {
+  static PathsOptions Read(lua_State* L, int index, const std::string& path);
+};
+template <>
+struct LuaValue<OptimizeOptions> {
+  static OptimizeOptions Read(lua_State* L, int index, const std::string& path);
+};
+template <>
+struct LuaValue<CertifyOptions> {
+  static CertifyOptions Read(lua_State* L, int index, const std::string& path);
+};
+template <>
+struct LuaValue<GraspsOptions> {
+  static GraspsOptions Read(lua_State* L, int index, const std::string& path);
+};
+template <>
+struct LuaValue<MotionOptions> {
+  static MotionOptions Read(lua_State* L, int index, const std::string& path);
+};
+
+std::vector<const Schema*> StageOptionSchemas();
+
+}  // namespace pregrasp

@@ -1,0 +1,340 @@
+// The planner's stages from scripts, in the real machine. The networks' weights are random: what
+// is found is poor, how it is stepped is not.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "app/recording/manifest.h"
+#include "app/recording/run_directory.h"
+#include "bindings/script.h"
+#include "tests/bindings/lua_text.h"
+#include "tests/networks/random_network.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::internal::CaptureStdout;
+using testing::internal::GetCapturedStdout;
+
+// Small stages, so that a test takes well under a second.
+const char* const kPrelude = R"(local pg = require "pregrasp"
+local function session() return pg.open "scenes/ruler.lua" end
+local function graph(s) return (s or session()):graph{ triangles = 12, samples = 1, points = 128 } end
+local function pruned(s) local g = graph(s) g:score() g:prune{ top_percent = 20 } return g end
+local function optimizer(s) return pruned(s):paths{ stages = 2 }:next():optimize{ samples = 6, iterations = 4, patience = 9 } end
+local function run(o) while o:step() do end return o end
+local function same(a, b) assert(#a == #b) for i = 1, #a do if a[i].cost ~= b[i].cost then return false end end return true end
+)";
+
+class PlannerScriptTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    weights_ = std::make_unique<TestFolder>();
+    WriteTensors(weights_->path() / "score.safetensors", MakeRandomScore(3));
+    WriteTensors(weights_->path() / "generator.safetensors", MakeRandomGenerator(4));
+  }
+  static void TearDownTestSuite() { weights_.reset(); }
+
+  std::string Script(const std::string& body) {
+    config_.output = folder_.path() / "out";
+    if (config_.weights.empty()) config_.weights = weights_->path();
+    const auto file = folder_.Write("test.lua", kPrelude + body);
+    CaptureStdout();
+    try {
+      RunScript(file, {}, config_);
+    } catch (const std::exception&) {
+      GetCapturedStdout();
+      throw;
+    }
+    return GetCapturedStdout();
+  }
+
+  // The line with which the script's only line fails, after its position.
+  std::string Failure(const std::string& line) {
+    try {
+      Script(line);
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      const std::string marker = "test.lua:8: ";
+      const std::size_t at = message.find(marker);
+      return at == std::string::npos ? "not of the line: " + message
+                                     : message.substr(at + marker.size());
+    }
+    return "no failure";
+  }
+
+  static std::unique_ptr<TestFolder> weights_;
+  TestFolder folder_;
+  ScriptConfig config_;
+};
+std::unique_ptr<TestFolder> PlannerScriptTest::weights_;
+
+TEST_F(PlannerScriptTest, AGraphIsMeshedScoredAndPrunedStepByStep) {
+  EXPECT_EQ(Script(R"(
+    local g = graph()
+    print(g, g.stage, g.step_id, g.num_triangles, g.num_nodes, #g.kept, #g.mesh.triangles)
+    g:score() print(g.stage, g.step_id)
+    while g:prune_step() do print(g.stage, g.step_id, #g.initial) end
+    print(#g.kept >= #g.initial, g.num_edges > #g.kept, g.top_percent))"),
+            "Graph(meshed, 144 nodes)\tmeshed\tgraph.mesh\t12\t144\t0\t12\nscored\tgraph.score\n"
+            "pruned_context\tgraph.prune.1\t8\npruned_free\tgraph.prune.2\t8\n"
+            "connected\tgraph.prune.3\t8\ntrue\ttrue\t5.0\n");
+}
+
+TEST_F(PlannerScriptTest, PruningTakesAnotherPercentageAndGoesBackExactly) {
+  EXPECT_EQ(Script(R"(
+    local g = graph() g:score()
+    local fork = g:fork()
+    g:prune{ top_percent = 10 } fork:prune{ top_percent = 50 }
+    print(#g.initial, #fork.initial, fork.top_percent)
+    local kept = g.kept
+    g:back(3) print(g.stage, #g.kept, #fork.kept > #kept)
+    g:prune() print(g.stage, #g.kept == #kept, g.kept[1] == kept[1]))"),
+            "15\t72\t50.0\nscored\t0\ttrue\nconnected\ttrue\ttrue\n");
+}
+
+TEST_F(PlannerScriptTest, ANodeSaysWhyItIsThereOrNot) {
+  EXPECT_EQ(Script(R"(
+    local g = pruned()
+    local best = g:top(3)
+    print(#best, best[1].rank_c, best[1].s_c >= best[2].s_c, best[1].id == best[1].thumb * 12 + best[1].index)
+    local why = g:why(best[1].id)
+    print(why.kept, why.verdict:find("^kept_by") ~= nil, why.node.rank_c, why.node.s_c >= why.threshold_c)
+    print(tostring(why) == why.text, why.text:find("rank 1 of 144", 1, true) ~= nil)
+    local out for id = 0, 143 do if not g:node(id).kept then out = id break end end
+    local why_not = g:why_not(out)
+    print(why_not.verdict, why_not.id == out, why_not.text:find("is pruned", 1, true) ~= nil)
+    print(#g:neighbors(best[1].id) >= 1, #g:neighbors(out)))"),
+            "3\t1\ttrue\ttrue\ntrue\ttrue\t1\ttrue\ntrue\ttrue\npruned\ttrue\ttrue\ntrue\t0\n");
+}
+
+TEST_F(PlannerScriptTest, PathsComeBestFirstByNextByTopAndByNumber) {
+  EXPECT_EQ(Script(R"(
+    local paths = pruned():paths{ stages = 3 }
+    local top = paths:top(5)
+    print(#top, paths.stages, paths.count > 100, top[1].step_id == "")
+    for i = 1, 4 do assert(top[i].score >= top[i + 1].score and top[i].rank == i) end
+    local p = paths:next()
+    print(p.rank, p.step_id, #p.nodes, p.score == top[1].score, paths[1].score == p.score, paths[2].rank)
+    print(paths:next().rank, paths[2].nodes[1].id == top[2].nodes[1].id)
+    local sum = 0 for _, term in ipairs(p.terms) do sum = sum + term end
+    print(math.abs(sum - p.score) < 1e-12, p.terms[1] == p.nodes[1].s_c, p.terms[3] == p.nodes[3].s_n)
+    for _, s in ipairs(p.siblings) do
+      assert(s.score <= p.score and math.abs(p.score - s.score - s.behind) < 1e-12)
+      assert(s.nodes[1] == p.nodes[1].id and s.nodes[2] == p.nodes[2].id and s.nodes[3] ~= p.nodes[3].id)
+    end
+    print(#p.siblings <= 5))"),
+            "5\t3\ttrue\ttrue\n1\tpaths.rank.1\t3\ttrue\ttrue\t2\n2\ttrue\n"
+            "true\ttrue\ttrue\ntrue\n");
+  EXPECT_EQ(Script(R"(
+    local paths, n = pruned():paths{ stages = 1 }, 0
+    while paths:next() do n = n + 1 end
+    print(n == paths.count, paths:next(), paths[n + 1], paths[n].rank == n))"),
+            "true\tnil\tnil\ttrue\n");
+}
+
+TEST_F(PlannerScriptTest, AnOptimisationIsSteppedTakenBackAndForkedExactly) {
+  EXPECT_EQ(Script(R"(
+    local o = optimizer()
+    print(o, o.iteration, o.best_cost, o.mean_cost, #o:rollouts())
+    while o:step() do end
+    print(o.iteration, o.converged, #o.best_history, #o:rollouts(), o.best_cost == o.best.total, o.step_id)
+    local last, cost = o:rollouts(), o.best_cost
+    o:back(2) print(o.iteration, o.step_id, o.converged)
+    local other, twin = o:fork{ sigma = 0.3 }, o:fork()
+    run(o) run(other) run(twin)
+    print(same(last, o:rollouts()), same(last, twin:rollouts()), same(last, other:rollouts()), o.best_cost == cost)
+    print(o:step(), o.iteration)
+    local r = last[1]
+    print(r.cost == r.terms.total, #r.terms.stage_scores, r.weight >= 0, #r.X_WO.p))"),
+            "Optimizer(path 1, iteration 0)\t0\tnil\tnil\t0\n4\ttrue\t4\t6\ttrue\tpath.1.mppi.4\n"
+            "2\tpath.1.mppi.2\tfalse\ntrue\ttrue\tfalse\ttrue\nfalse\t4\ntrue\t2\ttrue\t3\n");
+}
+
+TEST_F(PlannerScriptTest, ATrajectoryIsCertifiedAndItsGraspsHaveReasons) {
+  EXPECT_EQ(
+      Script(R"(
+    local t = run(optimizer()):certify{ hold_seconds = 0.5 }
+    print(t.step_id, t.certified == (#t.reasons == 0), t.num_steps > 100, #t.stages, #t.object.p, t.seconds > 2)
+    for _, stage in ipairs(t.stages) do
+      if stage.thumb.on then assert(#stage.thumb.p_WTargets == 4 and #stage.thumb.nhat_O == 3) end
+    end
+    local gr = t:grasps{ samples = 3, max_refinements = 2, max_solves = 1, starts = 2 }
+    print(gr.count, gr[1].step_id, gr[4], gr.r_suc == gr.num_feasible / 3, gr.r_suc_raw <= gr.r_suc)
+    local n = 0
+    for i, x in gr:all() do
+      n = n + 1
+      assert(x.sample == i and x.feasible == (x.reason == "feasible") and #x.text > 10)
+      assert(#x.contacts == #x.fingers and (x.lift == nil) == not x.feasible)
+    end
+    print(n, gr:best() == nil or gr:best().feasible))"),
+      "path.1.certify\ttrue\ttrue\t2\t3\ttrue\n3\tpath.1.grasp.1\tnil\ttrue\ttrue\n3\ttrue\n");
+}
+
+// A light cube on a post can be grasped from most sides: of the first seeds, whatever the networks
+// say, the first one with a feasible grasp.
+const char* const kCube = R"(
+    local s, gr
+    for seed = 1, 8 do
+      s = pg.open(pg.scene{ name = "cube",
+        object = { shape = pg.box{0.065, 0.065, 0.065}, mass = 0.05, friction = 0.6, p = {0, 0, 0.3325} },
+        environment = { { name = "post", shape = pg.box{0.03, 0.03, 0.3}, p = {0, 0, 0.15}, friction = 0.6 } } },
+        { seed = seed })
+      local o = pruned(s):paths{ stages = 1 }:next():optimize{ samples = 6, iterations = 2 }
+      gr = run(o):certify{ hold_seconds = 0.1 }:grasps{ samples = 4, points = 100, pairs = 300,
+        max_refinement = 0.05, max_refinements = 100, max_solves = 20, starts = 3 }
+      if gr:best() then break end
+    end
+    local quick = { keyframe_starts = 3, frame_starts = 1, smoothing_sweeps = 1, fps = 5 }
+)";
+
+TEST_F(PlannerScriptTest, AFeasibleGraspHasForcesAPoseAndALift) {
+  EXPECT_EQ(Script(kCube + std::string(R"(
+    print(gr.count, gr.num_feasible >= 1, gr.r_suc == gr.num_feasible / 4)
+    local best = gr:best()
+    print(best.feasible, best.wrench.feasible, best.ik.solved, #best.wrench.forces == #best.contacts, best.ik.tip_error < 2e-3)
+    print(type(best.lift.held), best.lift.direction_W[3] > 0.5, best.moved_mm <= 50)
+    for _, x in gr:all() do if x.feasible then
+      assert(x.lift.held == best.lift.held or best.lift.held)
+      assert(x.lift.held ~= best.lift.held or x.wrench.margin <= best.wrench.margin)
+    else
+      assert(x.lift == nil and not pcall(x.motion, x))
+    end end)")),
+            "4\ttrue\ttrue\ntrue\ttrue\ttrue\ttrue\ttrue\nboolean\ttrue\ttrue\n");
+}
+
+TEST_F(PlannerScriptTest, AHandMotionIsSolvedKeyByKeyAndFrameByFrame) {
+  EXPECT_EQ(Script(kCube + std::string(R"(
+    local m = gr:best():motion(quick)
+    print(m.order, m.num_solved, m.summary, m.finished)
+    local times = {}
+    for key in m:keyframes() do
+      times[#times + 1] = key.t
+      assert(key.step_id:find("^motion%.key%.%d+$") and key.q.THJ4 and #key.X_WH.q == 4 and key.clearance_mm)
+    end
+    print(#times == m.num_keyframes, times[1] > times[2], times[#times] == 0, m:step())
+    local again = 0 for _ in m:keyframes() do again = again + 1 end
+    print(again == #times)
+    local n, last = 0, -1
+    for frame in m:frames() do
+      n = n + 1
+      assert(frame.number == n and frame.t > last and frame.failed == (frame.loosened == "failed"))
+      last = frame.t
+    end
+    print(n == m.num_frames, m.finished, m.summary.frames == n, m.summary.failed <= n)
+    m:back() print(m.finished, m.num_solved == #times) m:back(#times) print(m.num_solved)
+    quick.order = "forward"
+    local f = gr:best():motion(quick) f:step() f:step() print(f.order, f.num_solved)
+    print(gr:best():motion{}.num_frames > n))")),
+            "reverse\t0\tnil\tfalse\ntrue\ttrue\ttrue\tfalse\ntrue\ntrue\ttrue\ttrue\ttrue\n"
+            "false\ttrue\n0\nforward\t2\ntrue\n");
+}
+
+TEST_F(PlannerScriptTest, AFinishedMotionIsTheRuns) {
+  Script(kCube + std::string(R"(
+    s:record{ dir = "out/cube", pictures = "none" }
+    local m = gr:best():motion(quick)
+    for key in m:keyframes() do key:shot{} end
+    for _ in m:frames() do end
+    s:save())"));
+  const LoadedRun run = LoadRun(folder_.path() / "out/cube");
+  EXPECT_GE(run.summary["motion"]["failed"], 0);
+  EXPECT_EQ(run.summary["grasps"]["tried"], 4);
+  EXPECT_GT(run.summary["wrench"]["min_normal_N"], 0.49);
+  EXPECT_EQ(run.manifest["configuration"]["motion"]["fps"], 5.0);
+  EXPECT_TRUE(fs::exists(folder_.path() / "out/cube/motion.csv"));
+  EXPECT_EQ(run.steps.back().id,
+            "motion.frame." + std::to_string(run.summary["motion"]["frames"].get<int>()));
+}
+
+TEST_F(PlannerScriptTest, EachStepIsInTheRunDirectoryWithItsPicture) {
+  EXPECT_EQ(Script(R"(
+    local s = session()
+    s:record{ dir = "out/lesson", pictures = "key" }
+    local o = optimizer(s)
+    o:step()
+    local small = { size = { 64, 36 }, quality = "draft" }
+    o:shot(small) o:step() o:back() o:shot(small)
+    o:certify{ hold_seconds = 0.2 }:shot(small)
+    local g = graph(s)
+    g:shot{ "graph", overlay = { "mesh", "scores" }, size = { 64, 36 }, quality = "draft", file = "out/g.png" }
+    print(s:save()))"),
+            (folder_.path() / "out/lesson").string() + "\n");
+  std::vector<std::string> ids;
+  const LoadedRun run = LoadRun(folder_.path() / "out/lesson");
+  for (const StepRecord& step : run.steps) ids.push_back(step.id);
+  EXPECT_EQ(ids, (std::vector<std::string>{"scene.start", "graph.mesh", "graph.score",
+                                           "graph.prune.1", "graph.prune.2", "graph.prune.3",
+                                           "paths.rank.1", "path.1.mppi.1", "path.1.mppi.2",
+                                           "path.1.mppi.1", "path.1.certify", "graph.mesh"}));
+  EXPECT_FALSE(VerifyManifest(folder_.path() / "out/lesson").has_value());
+  EXPECT_EQ(run.manifest["configuration"]["mppi"]["samples"], 48);  // of the last step: a new graph
+  EXPECT_EQ(run.summary["counts"]["rollouts"], 12);
+  EXPECT_TRUE(fs::exists(folder_.path() / "out/g.png"));
+  EXPECT_TRUE(fs::exists(folder_.path() / "out/lesson/frames/0008_path-1-mppi-1.png"));
+}
+
+TEST_F(PlannerScriptTest, TheSameSeedGivesTheSameStepsForAnyThreads) {
+  std::string first;
+  for (const int threads : {1, 2}) {
+    config_.threads = threads;
+    const std::string text = Script(R"(
+      local o = run(optimizer())
+      for _, r in ipairs(o:rollouts()) do print(("%a %a"):format(r.cost, r.weight)) end
+      for _, x in o:certify{ hold_seconds = 0.2 }:grasps{ samples = 2, max_refinements = 2, max_solves = 1, starts = 2 }:all() do
+        print(x.reason, x.moved_mm)
+      end)");
+    if (first.empty()) first = text;
+    EXPECT_EQ(text, first);
+  }
+  EXPECT_GT(first.size(), 100U);
+}
+
+TEST_F(PlannerScriptTest, WhatMakesNoSenseIsOneLine) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"session():graph{ triangle = 40 }",
+       "graph: unknown key \"triangle\" (did you mean \"triangles\"?)"},
+      {"session():graph{ samples = 'x' }",
+       "graph: graph.samples: expected a whole number, got \"x\""},
+      {"session():graph{ triangles = 13 }", "graph: "},
+      {"graph():prune()",
+       "prune: expected a graph with scores, got one without: call score() first"},
+      {"local g = graph() g:score() g:score()",
+       "score: expected a graph without scores, got one that has them"},
+      {"graph():paths()",
+       "paths: paths: expected a graph that has been pruned, got one that has not"},
+      {"graph():back()", "back: steps: expected 0 to 0 steps, got 1"},
+      {"graph():why(144)", "why: "},
+      {"pruned():prune{ top_percent = 1 }",
+       "prune: top_percent: expected a graph that is not pruned yet, got one that is"},
+      {"pruned():paths{ stages = 9 }", "paths: stages: expected a whole number from 1 to 8, got 9"},
+      {"pruned():paths():next():optimize{ sampels = 9 }",
+       "optimize: unknown key \"sampels\" (did you mean \"samples\"?)"},
+      {"pruned():paths():next():optimize{ samples = 1 }", "optimize: "},
+      {"optimizer():certify()", "certify: expected at least one step(), got none"},
+      {"optimizer():fork{ knots = 7 }", "fork: knots: expected 4, as before, got 7"},
+      {"optimizer().best_csot()",
+       "Optimizer: unknown key \"best_csot\" (did you mean \"best_cost\"?)"},
+      {"local x = pruned():paths().rank", "Paths: unknown key \"rank\""},
+      {"local s = session() graph(s) s:graph{ points = 256 }",
+       "graph: points: expected 128, as in the first graph, got 256"},
+      {"graph():shot{ overlay = { 'meshes' } }",
+       "shot: overlay: expected some of forces, cones, contacts, ghost, fingers, axes, mesh, "},
+      {"pruned():paths()[0]()", "[]: number: expected 1 to 100000, got 0"},
+  };
+  for (const auto& [line, expected] : cases) {
+    EXPECT_EQ(Failure(line).find(expected), 0U) << line << "\n  " << Failure(line);
+  }
+}
+
+TEST_F(PlannerScriptTest, MissingWeightsAreOneLineThatNamesTheFile) {
+  config_.weights = folder_.path() / "nowhere";
+  const std::string failure = Failure("session():graph()");
+  EXPECT_EQ(failure.find("graph: " + (folder_.path() / "nowhere/score.safetensors").string()), 0U)
+      << failure;
+}
+
+}  // namespace
+}  // namespace pregrasp
