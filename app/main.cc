@@ -29,6 +29,7 @@ int Run(int argc, char** argv) {
   app.footer("Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of ours.");
   Action action;
   AddCheck(app, action);
+  AddDataset(app, action);
   AddInfo(app, action);
   AddRepl(app, action);
   AddRun(app, action);

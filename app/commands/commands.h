@@ -10,6 +10,7 @@ using Action = std::function<int()>;
 
 // One subcommand each: describes its options to `app`, and sets `action` when it was chosen.
 void AddCheck(CLI::App& app, Action& action);
+void AddDataset(CLI::App& app, Action& action);
 void AddInfo(CLI::App& app, Action& action);
 void AddRepl(CLI::App& app, Action& action);
 void AddRun(CLI::App& app, Action& action);

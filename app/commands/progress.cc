@@ -18,19 +18,23 @@ void ProgressLine::Show(const std::string& stage, int done, int total) {
   const bool fresh = stage != stage_;
   if (fresh) {
     stage_ = stage;
-    stage_start_ = now;
+    first_done_ = done;
+    stage_start_ = shown_ = now;
   }
   if (!terminal_) {
     if (fresh) fmt::print(stderr, "{}\n", stage);
-    return;
+    if (now - shown_ < std::chrono::seconds(30)) return;
   }
+  shown_ = now;
   std::string rate;
   const double seconds = std::chrono::duration<double>(now - stage_start_).count();
-  if (done > 0 && seconds > 0.0) {
+  const int made = done - first_done_;
+  if (made > 0 && seconds > 0.0) {
     rate =
-        fmt::format(", {:.1f}/s, {:.0f} s left", done / seconds, seconds / done * (total - done));
+        fmt::format(", {:.3g}/s, {:.0f} s left", made / seconds, seconds / made * (total - done));
   }
-  fmt::print(stderr, "\r\033[K{} {}/{}{}", stage, done, total, rate);
+  fmt::print(stderr, "{}{} {}/{}{}{}", terminal_ ? "\r\033[K" : "", stage, done, total, rate,
+             terminal_ ? "" : "\n");
   std::fflush(stderr);
 }
 

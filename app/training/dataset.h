@@ -19,7 +19,9 @@ inline constexpr int kNumReliefs = static_cast<int>(kReliefs.size());
 
 /// One pose of an object among surroundings, as the networks see it.
 struct ContextRecord {
-  std::string kind;  ///< how it came about: "resting", "tilted", ..
+  std::string kind;     ///< of its scene: "free", "edge tilted wall", ..
+  int scene = 0;        ///< number of its scene within the item
+  double relief = 0.0;  ///< how far the surroundings were moved away [m]
   RigidTransform X_WO = RigidTransform::Identity();
   VectorX phi;                 ///< at the item's points [m]
   std::vector<bool> occluded;  ///< of the item's points

@@ -101,8 +101,8 @@ struct ItemTable {
 };
 
 struct ContextTable {
-  Ints item, kind;
-  Doubles pose;
+  Ints item, kind, scene;
+  Doubles pose, relief;
   Floats phi;
   Bytes occluded;
   std::vector<std::string> kinds;
@@ -142,6 +142,8 @@ void WriteContexts(const std::vector<DatasetItem>& items, TensorFile& file) {
       PREGRASP_CHECK(static_cast<int>(context.occluded.size()) == points);
       table.item.Add(static_cast<double>(i));
       table.kind.Add(NumberOf(table.kinds, context.kind));
+      table.scene.Add(context.scene);
+      table.relief.Add(context.relief);
       // The matrix itself: through a quaternion it would not come back to the last bit.
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) {
@@ -158,6 +160,8 @@ void WriteContexts(const std::vector<DatasetItem>& items, TensorFile& file) {
   file.metadata["kinds"] = nlohmann::json(table.kinds).dump();
   file.tensors["context.item"] = MakeTensor({n}, table.item.values);
   file.tensors["context.kind"] = MakeTensor({n}, table.kind.values);
+  file.tensors["context.scene"] = MakeTensor({n}, table.scene.values);
+  file.tensors["context.relief"] = MakeTensor({n}, table.relief.values);
   file.tensors["context.pose"] = MakeTensor({n, 3, 4}, table.pose.values);
   file.tensors["context.phi"] = MakeTensor({n, points}, table.phi.values);
   file.tensors["context.occluded"] = MakeTensor({n, points}, table.occluded.values);
@@ -249,6 +253,8 @@ std::vector<ContextPlace> ReadContexts(Reader& reader, std::vector<DatasetItem>&
   const auto kinds = reader.Names("kinds");
   const auto item = reader.Get<std::int32_t>("context.item", n, {});
   const auto kind = reader.Get<std::int32_t>("context.kind", n, {});
+  const auto scene = reader.Get<std::int32_t>("context.scene", n, {});
+  const auto relief = reader.Get<double>("context.relief", n, {});
   const auto pose = reader.Get<double>("context.pose", n, {3, 4});
   const auto phi = reader.Get<float>("context.phi", n, {points});
   const auto occluded = reader.Get<std::uint8_t>("context.occluded", n, {points});
@@ -258,6 +264,8 @@ std::vector<ContextPlace> ReadContexts(Reader& reader, std::vector<DatasetItem>&
     places.push_back({item[c], static_cast<int>(owner.contexts.size())});
     ContextRecord record;
     record.kind = kinds[reader.Index(kind[c], kinds.size(), "context.kind")];
+    record.scene = scene[c];
+    record.relief = relief[c];
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) {
         record.X_WO.matrix()(row, column) = pose[12 * c + (4L * row + column)];

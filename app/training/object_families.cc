@@ -7,8 +7,8 @@
 #include <functional>
 #include <utility>
 
-#include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/geometry/mass_properties.h"
 #include "app/training/procedural_mesh.h"
 
 namespace pregrasp {
@@ -28,7 +28,6 @@ constexpr double kMinMass = 0.01, kMaxMass = 2.5;
 struct Draft {
   std::string measures;
   Shape shape;
-  double volume = 0.0;  // [m^3]
   double density = 0.0;
 };
 
@@ -41,7 +40,7 @@ std::string Millimetres(std::initializer_list<double> metres) {
 }
 
 Draft MakeBox(double x, double y, double z, double density) {
-  return {Millimetres({x, y, z}), Box{{x, y, z}}, x * y * z, density};
+  return {Millimetres({x, y, z}), Box{{x, y, z}}, density};
 }
 
 Draft MakeLathe(const std::vector<Vector2>& profile, double density) {
@@ -53,9 +52,7 @@ Draft MakeLathe(const std::vector<Vector2>& profile, double density) {
   }
   std::vector<Vector2> centred = profile;
   for (Vector2& p : centred) p.y() -= 0.5 * (low + high);
-  TriangleMesh mesh = Lathe(centred);
-  const double volume = CalcVolume(mesh);
-  return {Millimetres({2.0 * radius, high - low}), MakeMeshShape(std::move(mesh)), volume, density};
+  return {Millimetres({2.0 * radius, high - low}), MakeMeshShape(Lathe(centred)), density};
 }
 
 PlacedShape Place(Shape shape, const Vector3& p, const Vector3& rpy = Vector3::Zero()) {
@@ -98,13 +95,13 @@ Draft Strip(Rng& rng) {
 
 Draft Can(Rng& rng) {
   const double r = rng.Uniform(0.020, 0.055), h = rng.Uniform(0.03, 0.20);
-  return {Millimetres({2.0 * r, h}), Cylinder{r, h}, kPi * r * r * h, Draw(rng, kLiquid)};
+  return {Millimetres({2.0 * r, h}), Cylinder{r, h}, Draw(rng, kLiquid)};
 }
 
 // Pens, candles, batteries, dowels: lying, or standing when stout.
 Draft Rod(Rng& rng) {
   const double r = rng.Uniform(0.005, 0.016), h = rng.Uniform(0.08, 0.22);
-  return {Millimetres({2.0 * r, h}), Cylinder{r, h}, kPi * r * r * h, Draw(rng, kPlastic)};
+  return {Millimetres({2.0 * r, h}), Cylinder{r, h}, Draw(rng, kPlastic)};
 }
 
 // A foot, a flat well, a raised rim.
@@ -157,8 +154,7 @@ Draft Flask(Rng& rng) {
                                  RoundedRectangle(x, y, corner, body - 0.5 * h),
                                  RoundedRectangle(neck, neck, 0.5 * neck, body - 0.5 * h + 0.01),
                                  RoundedRectangle(neck, neck, 0.5 * neck, 0.5 * h)});
-  const double volume = CalcVolume(mesh);
-  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), volume, Draw(rng, kLiquid)};
+  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), Draw(rng, kLiquid)};
 }
 
 // A closed tub that flares, with a lid that stands out, or without.
@@ -174,9 +170,8 @@ Draft Tub(Rng& rng) {
     rings.push_back(RoundedRectangle(x + 2.0 * lip, y + 2.0 * lip, corner + lip, top - lid));
   rings.push_back(RoundedRectangle(x + 2.0 * lip, y + 2.0 * lip, corner + lip, top));
   TriangleMesh mesh = SkinRings(rings);
-  const double volume = CalcVolume(mesh);
   return {Millimetres({x, y, h}) + (lip > 0.0 ? " with lip" : ""), MakeMeshShape(std::move(mesh)),
-          volume, Draw(rng, kCarton)};
+          Draw(rng, kCarton)};
 }
 
 // A shallow open tray.
@@ -188,8 +183,7 @@ Draft Tray(Rng& rng) {
       {RoundedRectangle(s * x, s * y, corner, low), RoundedRectangle(x, y, corner, low + h),
        RoundedRectangle(x - 2.0 * t, y - 2.0 * t, corner - t, low + h),
        RoundedRectangle(s * x - 2.0 * t, s * y - 2.0 * t, corner - t, low + t)});
-  const double volume = CalcVolume(mesh);
-  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), volume, Draw(rng, kPlastic)};
+  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), Draw(rng, kPlastic)};
 }
 
 // Two arms at a right angle, centred on their common bounding box.
@@ -199,7 +193,7 @@ Draft Bracket(Rng& rng) {
   Union shape;
   shape.parts = {Place(Box{{a, w, t}}, {0.0, 0.0, 0.5 * (t - b)}),
                  Place(Box{{t, w, b}}, {0.5 * (t - a), 0.0, 0.0})};
-  return {Millimetres({a, w, b}), shape, w * t * (a + b - t), Draw(rng, kWood)};
+  return {Millimetres({a, w, b}), shape, Draw(rng, kWood)};
 }
 
 // A C of three bars.
@@ -210,7 +204,7 @@ Draft Clamp(Rng& rng) {
   shape.parts = {Place(Box{{a, t, w}}, {0.0, 0.5 * (b - t), 0.0}),
                  Place(Box{{a, t, w}}, {0.0, 0.5 * (t - b), 0.0}),
                  Place(Box{{t, b, w}}, {0.5 * (t - a), 0.0, 0.0})};
-  return {Millimetres({a, b, w}), shape, w * t * (2.0 * a + b - 2.0 * t), Draw(rng, kPlastic)};
+  return {Millimetres({a, b, w}), shape, Draw(rng, kPlastic)};
 }
 
 // A cup with a handle of three bars.
@@ -219,7 +213,6 @@ Draft Mug(Rng& rng) {
   const double reach = rng.Uniform(0.025, 0.040), bar = 0.010, span = 0.6 * h;
   const auto profile = Vessel({{0.92 * r, -0.5 * h}, {r, 0.5 * h}}, t, 0.006);
   TriangleMesh mesh = Lathe(profile);
-  const double volume = CalcVolume(mesh) + bar * bar * (2.0 * reach + span);
   const double shift = 0.5 * reach;  // keeps the whole centred
   Union shape;
   shape.parts = {
@@ -227,7 +220,7 @@ Draft Mug(Rng& rng) {
       Place(Box{{reach, bar, bar}}, {r + 0.5 * reach - 0.004 - shift, 0.0, 0.5 * (span - bar)}),
       Place(Box{{reach, bar, bar}}, {r + 0.5 * reach - 0.004 - shift, 0.0, 0.5 * (bar - span)}),
       Place(Box{{bar, bar, span}}, {r + reach - 0.5 * bar - shift, 0.0, 0.0})};
-  return {Millimetres({2.0 * r + reach, 2.0 * r, h}), shape, volume, Draw(rng, kCeramic)};
+  return {Millimetres({2.0 * r + reach, 2.0 * r, h}), shape, Draw(rng, kCeramic)};
 }
 
 Draft Hammer(Rng& rng) {
@@ -236,8 +229,7 @@ Draft Hammer(Rng& rng) {
   Union shape;
   shape.parts = {Place(Cylinder{r, length}, {0.0, 0.0, 0.0}, {0.0, 0.5 * kPi, 0.0}),
                  Place(Box{{t, head, t}}, {0.5 * (length - t), 0.0, 0.0})};
-  const double volume = kPi * r * r * length + head * t * t;
-  return {Millimetres({length, head, t}), shape, volume, rng.Uniform(1200.0, 3500.0)};
+  return {Millimetres({length, head, t}), shape, rng.Uniform(1200.0, 3500.0)};
 }
 
 Draft Screwdriver(Rng& rng) {
@@ -247,24 +239,22 @@ Draft Screwdriver(Rng& rng) {
   Union shape;
   shape.parts = {Place(Capsule{r, handle - 2.0 * r}, {-0.5 * shaft, 0.0, 0.0}, along),
                  Place(Cylinder{thin, shaft + r}, {0.5 * (handle - r), 0.0, 0.0}, along)};
-  const double volume = kPi * r * r * handle + kPi * thin * thin * shaft;
-  return {Millimetres({handle + shaft, 2.0 * r}), shape, volume, Draw(rng, kPlastic)};
+  return {Millimetres({handle + shaft, 2.0 * r}), shape, Draw(rng, kPlastic)};
 }
 
 Draft Pan(Rng& rng) {
   const double r = rng.Uniform(0.06, 0.11), h = rng.Uniform(0.025, 0.06), t = 0.004;
   const double handle = rng.Uniform(0.09, 0.15), w = rng.Uniform(0.018, 0.028);
   TriangleMesh mesh = Lathe(Vessel({{0.9 * r, -0.5 * h}, {r, 0.5 * h}}, t, t));
-  const double volume = CalcVolume(mesh) + 0.012 * w * handle;
   Union shape;
   shape.parts = {Place(MakeMeshShape(std::move(mesh)), {-0.5 * handle, 0.0, 0.0}),
                  Place(Box{{handle + 0.01, w, 0.012}}, {r - 0.005, 0.0, 0.5 * h - 0.012})};
-  return {Millimetres({2.0 * r + handle, 2.0 * r, h}), shape, volume, rng.Uniform(1200.0, 2600.0)};
+  return {Millimetres({2.0 * r + handle, 2.0 * r, h}), shape, rng.Uniform(1200.0, 2600.0)};
 }
 
 Draft Ball(Rng& rng) {
   const double r = rng.Uniform(0.025, 0.055);
-  return {Millimetres({2.0 * r}), Sphere{r}, 4.0 / 3.0 * kPi * r * r * r, Draw(rng, kFoam)};
+  return {Millimetres({2.0 * r}), Sphere{r}, Draw(rng, kFoam)};
 }
 
 // A bar of triangular section: cheese, door stops, toy roofs.
@@ -277,8 +267,7 @@ Draft Wedge(Rng& rng) {
     return Ring{{-0.5 * x, at, -0.5 * h}, {apex, at, 0.5 * h}, {0.5 * x, at, -0.5 * h}};
   };
   TriangleMesh mesh = SkinRings({section(-0.5 * y), section(0.5 * y)});
-  const double volume = CalcVolume(mesh);
-  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), volume, Draw(rng, kWood)};
+  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), Draw(rng, kWood)};
 }
 
 using Family = std::pair<std::string, std::function<Draft(Rng&)>>;
@@ -311,12 +300,11 @@ TrainingObject SampleObject(const std::string& family, Rng rng) {
                                   [&](const Family& f) { return f.first == family; });
   if (found == Families().end()) throw InputError("", "family", "an object family", family);
   Draft draft = found->second(rng);
-  PREGRASP_CHECK(draft.volume > 0.0, family, draft.measures);
   TrainingObject object;
   object.family = family;
   object.name = family + " " + draft.measures;
   object.shape = std::move(draft.shape);
-  object.mass = std::clamp(draft.volume * draft.density, kMinMass, kMaxMass);
+  object.mass = std::clamp(CalcVolume(object.shape) * draft.density, kMinMass, kMaxMass);
   return object;
 }
 

@@ -66,16 +66,6 @@ Ring RoundedRectangle(double x, double y, double radius, double z) {
   return ring;
 }
 
-double CalcVolume(const TriangleMesh& mesh) {
-  double volume = 0.0;
-  for (int f = 0; f < mesh.F.rows(); ++f) {
-    const Vector3 a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)),
-                  c = mesh.V.row(mesh.F(f, 2));
-    volume += a.dot(b.cross(c)) / 6.0;
-  }
-  return volume;
-}
-
 Mesh MakeMeshShape(TriangleMesh mesh) {
   Mesh shape;
   shape.mesh = std::move(mesh);

@@ -21,9 +21,6 @@ TriangleMesh Lathe(const std::vector<Vector2>& profile, int segments = 32);
 /// A rectangle of full size x by y with corners of `radius`, level at height z [m].
 Ring RoundedRectangle(double x, double y, double radius, double z);
 
-/// The signed volume of a closed mesh [m^3], positive if it is outward.
-double CalcVolume(const TriangleMesh& mesh);
-
 /// A Mesh shape that names no file.
 Mesh MakeMeshShape(TriangleMesh mesh);
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "app/core/error.h"
+#include "app/geometry/mass_properties.h"
 #include "app/training/procedural_mesh.h"
 
 namespace pregrasp {
@@ -42,7 +43,7 @@ void CollectBounds(const Shape& shape, const RigidTransform& X_BP, Vector3& low,
   if (const auto* s = std::get_if<Sphere>(&shape)) add_box(Vector3::Constant(s->radius));
   if (const auto* m = std::get_if<Mesh>(&shape)) {
     ExpectClosed(m->mesh, "mesh");
-    EXPECT_GT(CalcVolume(m->mesh), 0.0);
+    EXPECT_GT(CalcVolume(shape), 0.0);
     for (int i = 0; i < m->mesh.V.rows(); ++i) add(Vector3(m->mesh.V.row(i)));
   }
   if (const auto* u = std::get_if<Union>(&shape)) {
@@ -89,7 +90,8 @@ TEST(ProceduralMeshTest, ALatheOfAStraightProfileIsAPrism) {
   const double r = 0.03, h = 0.1;
   const TriangleMesh mesh = Lathe({{r, 0.0}, {r, h}}, n);
   ExpectClosed(mesh, "prism");
-  EXPECT_NEAR(CalcVolume(mesh), 0.5 * n * r * r * std::sin(2.0 * kPi / n) * h, 1e-12);
+  EXPECT_NEAR(CalcVolume(MakeMeshShape(mesh)), 0.5 * n * r * r * std::sin(2.0 * kPi / n) * h,
+              1e-12);
 }
 
 TEST(ProceduralMeshTest, GoingBackDownInsideHollowsAVessel) {
@@ -97,7 +99,8 @@ TEST(ProceduralMeshTest, GoingBackDownInsideHollowsAVessel) {
   const double area = 0.5 * n * std::sin(2.0 * kPi / n);
   const TriangleMesh mesh = Lathe({{0.04, 0.0}, {0.04, 0.1}, {0.03, 0.1}, {0.03, 0.02}}, n);
   ExpectClosed(mesh, "vessel");
-  EXPECT_NEAR(CalcVolume(mesh), area * (0.04 * 0.04 * 0.1 - 0.03 * 0.03 * 0.08), 1e-12);
+  EXPECT_NEAR(CalcVolume(MakeMeshShape(mesh)), area * (0.04 * 0.04 * 0.1 - 0.03 * 0.03 * 0.08),
+              1e-12);
 }
 
 TEST(ProceduralMeshTest, ARoundedRectangleHasItsSize) {

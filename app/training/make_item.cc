@@ -1,0 +1,178 @@
+#include "app/training/make_item.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "app/core/error.h"
+#include "app/core/sha256.h"
+#include "app/geometry/point_cloud.h"
+#include "app/graph/learned_scorer.h"
+
+namespace pregrasp {
+namespace {
+
+// Purposes of an item's random streams; scenes and labels are numbered from their base.
+enum Purpose : std::uint32_t { kCloud = 1, kObject = 500, kScene = 1000, kGrowth = 2000 };
+constexpr std::uint32_t kLabel = 100'000;
+constexpr std::uint32_t kLabelsPerScene = 1000;
+
+Rng ItemRng(const ItemConfig& config, std::int64_t index, std::uint32_t purpose) {
+  return Rng(config.seed, RngStream::kDataset, static_cast<std::uint32_t>(index), purpose);
+}
+
+ContextRecord MakeContext(const GraspWorld& world, const PointCloud& cloud,
+                          const std::vector<RigidTransform>& X_WB) {
+  const ObjectState state =
+      MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity);
+  ContextRecord context;
+  context.X_WO = X_WB.front();
+  context.phi = state.phi;
+  context.occluded = state.occluded;
+  return context;
+}
+
+GraspRecord MakeRecord(const GraspWorld& world, const GrownGrasp& grasp, int context,
+                       const std::vector<RigidTransform>& X_WB) {
+  GraspRecord record;
+  record.context = context;
+  record.p_OC.fill(Vector3::Zero());
+  record.nhat_O.fill(Vector3::Zero());
+  for (const GraspContact& contact : grasp.contacts) {
+    const int f = static_cast<int>(contact.finger);
+    record.used[f] = true;
+    record.p_OC[f] = contact.p_OC;
+    record.nhat_O[f] = contact.nhat_O;
+    record.phi[f] = CalcContactDistance(world, contact.p_OC, X_WB);
+  }
+  return record;
+}
+
+bool Resembles(const TrainingObject& object, const std::vector<ExcludedObject>& excluded) {
+  if (excluded.empty()) return false;
+  constexpr int kCompared = 400;
+  const MatrixX3 P = SamplePointCloud(object.shape, kCompared, Rng(0, RngStream::kPointCloud)).P;
+  return std::any_of(excluded.begin(), excluded.end(), [&](const ExcludedObject& other) {
+    return CalcAlignedChamfer(P, other.P) < kLeastUnlikeness;
+  });
+}
+
+PointCloud CloudOf(const DatasetItem& item) { return {item.P_O, item.N_O}; }
+
+}  // namespace
+
+std::string ItemConfig::ToJson() const {
+  nlohmann::ordered_json json;
+  json["version"] = 1;  // raise with any change that changes items
+  json["seed"] = seed;
+  json["scenes"] = scenes;
+  json["points"] = points;
+  json["excluded"] = nlohmann::ordered_json::object();
+  for (const ExcludedObject& object : excluded) {
+    const auto* bytes = reinterpret_cast<const char*>(object.P.data());
+    json["excluded"][object.name] =
+        Sha256(std::string_view(bytes, object.P.size() * sizeof(double)));
+  }
+  return json.dump();
+}
+
+SceneObject MakeItemObject(const ItemConfig& config, std::int64_t index) {
+  const auto& families = ObjectFamilies();
+  const std::string& family = families[index % families.size()];
+  constexpr std::uint32_t kAttempts = 200;
+  for (std::uint32_t attempt = 0; attempt < kAttempts; ++attempt) {
+    TrainingObject object = SampleObject(family, ItemRng(config, index, kObject + attempt));
+    if (!Resembles(object, config.excluded)) return MakeSceneObject(std::move(object));
+  }
+  throw InputError("", "excluded", "objects that leave room for family " + family, "none");
+}
+
+TrainingScene MakeItemScene(const ItemConfig& config, const SceneObject& object, std::int64_t index,
+                            int scene) {
+  return SampleTrainingScene(object, ItemRng(config, index, kScene + scene));
+}
+
+GraspWorld MakeTrainingWorld(const Scene& scene) {
+  SurfacePointsConfig surface;
+  surface.spacing = 4e-3;
+  surface.max_points = 3000;
+  return GraspWorld(scene, ShadowHand(), surface);
+}
+
+DatasetItem MakeGraspItem(const ItemConfig& config, std::int64_t index, ThreadPool& pool) {
+  const SceneObject object = MakeItemObject(config, index);
+  const PointCloud cloud =
+      SamplePointCloud(object.object.shape, config.points, ItemRng(config, index, kCloud));
+  DatasetItem item;
+  item.index = index;
+  item.family = object.object.family;
+  item.name = object.object.name;
+  item.mass = object.object.mass;
+  item.p_OOcm = object.mass.p_BoBcm;
+  item.P_O = cloud.P;
+  item.N_O = cloud.N;
+  for (int s = 0; s < config.scenes; ++s) {
+    const TrainingScene scene = MakeItemScene(config, object, index, s);
+    const GraspWorld world = MakeTrainingWorld(scene.scene);
+    Rng rng = ItemRng(config, index, kGrowth + s);
+    const double moved = kReliefs[1 + rng.UniformInt(kNumReliefs - 1)];
+    const bool free = scene.scene.bodies.size() == 1;
+    for (const double relief : {0.0, moved}) {
+      if (free && relief > 0.0) continue;
+      const auto X_WB = MoveSurroundingsAway(scene.scene, cloud.P, relief);
+      ContextRecord context = MakeContext(world, cloud, X_WB);
+      context.kind = scene.kind;
+      context.scene = s;
+      context.relief = relief;
+      const int number = static_cast<int>(item.contexts.size());
+      item.contexts.push_back(std::move(context));
+      const GrowthResult grown = GrowGrasps(world, config.growth, X_WB, rng.NextU64(), pool);
+      for (const GrownGrasp& grasp : grown.grasps) {
+        item.grasps.push_back(MakeRecord(world, grasp, number, X_WB));
+      }
+    }
+  }
+  return item;
+}
+
+SceneLabeler::SceneLabeler(const ItemConfig& config, const DatasetItem& item,
+                           const SceneObject& object, int context, const GraspGenerator& generator)
+    : config_(config),
+      index_(item.index),
+      context_(context),
+      scene_number_(item.contexts[context].scene),
+      generator_(generator),
+      cloud_(CloudOf(item)),
+      world_(MakeTrainingWorld(MakeItemScene(config, object, item.index, scene_number_).scene)),
+      X_WB_(world_.StartPoses()),
+      sampler_(world_, X_WB_, {}),
+      structure_(generator.BuildStructure(cloud_.P, X_WB_.front().linear())) {
+  for (const GraspRecord& grasp : item.grasps) {
+    if (item.contexts[grasp.context].scene == scene_number_) grasps_.push_back(&grasp);
+  }
+}
+
+LabelRecord SceneLabeler::MakeLabel(int number, std::optional<LabelExample>* example) const {
+  const std::uint32_t base = kLabel + kLabelsPerScene * static_cast<std::uint32_t>(scene_number_);
+  Rng rng = ItemRng(config_, index_, base + number);
+  const PlanningContacts contacts =
+      SampleLabelContacts(world_, sampler_, grasps_, number % 3, config_.labels, X_WB_, rng);
+  LabelRecord label =
+      CalcLabel(world_, generator_, cloud_, structure_, contacts, config_.labels, rng, example);
+  label.context = context_;
+  return label;
+}
+
+DatasetItem AddLabels(const ItemConfig& config, DatasetItem item, const GraspGenerator& generator) {
+  const SceneObject object = MakeItemObject(config, item.index);
+  item.labels.clear();
+  for (std::size_t c = 0; c < item.contexts.size(); ++c) {
+    if (item.contexts[c].relief > 0.0) continue;
+    const SceneLabeler labeler(config, item, object, static_cast<int>(c), generator);
+    for (int l = 0; l < config.labels.per_scene; ++l) item.labels.push_back(labeler.MakeLabel(l));
+  }
+  return item;
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,122 @@
+#include "app/training/training_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "app/geometry/overlap.h"
+#include "app/geometry/point_cloud.h"
+#include "app/geometry/signed_distance.h"
+#include "app/training/make_item.h"
+#include "app/training/object_similarity.h"
+
+namespace pregrasp {
+namespace {
+
+double CalcLeastDistance(const Scene& scene, const MatrixX3& P_O,
+                         const std::vector<RigidTransform>& X_WB) {
+  const EnvironmentDistance environment(scene);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < P_O.rows(); ++i) {
+    const Vector3 p_W = X_WB[0] * Vector3(P_O.row(i).transpose());
+    least = std::min(least, environment.Calc(p_W, X_WB).phi);
+  }
+  return least;
+}
+
+std::vector<RigidTransform> Poses(const Scene& scene) {
+  std::vector<RigidTransform> X_WB;
+  for (const Body& body : scene.bodies) X_WB.push_back(body.X_WB);
+  return X_WB;
+}
+
+TEST(TrainingSceneTest, ABoxRestsOnEachOfItsFacesAndOftenestOnTheLargest) {
+  const Box box{{0.06, 0.10, 0.20}};
+  TrainingObject object;
+  object.shape = box;
+  object.mass = 0.3;
+  const SceneObject made = MakeSceneObject(object);
+  ASSERT_EQ(made.resting.size(), 6);
+  double total = 0.0;
+  for (const RestingPose& pose : made.resting) {
+    total += pose.share;
+    // The vertical extent tells the face.
+    const double height = (pose.R_WO.transpose() * Vector3::UnitZ()).cwiseAbs().dot(box.size);
+    const bool largest = std::abs(height - 0.06) < 1e-9;
+    EXPECT_EQ(largest, pose.share > 1.0 / 6.0) << height << " " << pose.share;
+  }
+  EXPECT_NEAR(total, 1.0, 1e-12);
+}
+
+TEST(TrainingSceneTest, ScenesOfEveryFamilyAreValidWithoutOverlap) {
+  for (const std::string& family : ObjectFamilies()) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const SceneObject object = MakeSceneObject(SampleObject(family, Rng(i)));
+      const TrainingScene made = SampleTrainingScene(object, Rng(7, RngStream::kTest, i));
+      EXPECT_EQ(made.kind == "free", made.scene.bodies.size() == 1);
+      if (made.kind == "free") continue;
+      EXPECT_NO_THROW(ValidateScene(made.scene)) << object.object.name << ": " << made.kind;
+      // Bodies are placed by their tessellations, which lie inside round shapes.
+      for (const Overlap& overlap : FindOverlaps(made.scene, 5e-4)) {
+        ADD_FAILURE() << object.object.name << ": " << made.kind << ": "
+                      << made.scene.bodies[overlap.body_b].name << " " << overlap.depth;
+      }
+    }
+  }
+}
+
+TEST(TrainingSceneTest, TheSameStreamMakesTheSameScene) {
+  const SceneObject object = MakeSceneObject(SampleObject("book", Rng(1)));
+  bool differ = false;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const Scene a = SampleTrainingScene(object, Rng(3, RngStream::kTest, i)).scene;
+    const Scene b = SampleTrainingScene(object, Rng(3, RngStream::kTest, i)).scene;
+    const Scene c = SampleTrainingScene(object, Rng(4, RngStream::kTest, i)).scene;
+    ASSERT_EQ(a.bodies.size(), b.bodies.size());
+    for (std::size_t k = 0; k < a.bodies.size(); ++k) {
+      EXPECT_EQ(a.bodies[k].X_WB.matrix(), b.bodies[k].X_WB.matrix());
+    }
+    differ = differ || a.bodies[0].X_WB.matrix() != c.bodies[0].X_WB.matrix();
+  }
+  EXPECT_TRUE(differ);
+}
+
+TEST(TrainingSceneTest, SurroundingsMoveAwayByTheRelief) {
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    const SceneObject object = MakeSceneObject(SampleObject("carton", Rng(i)));
+    const Scene scene = SampleTrainingScene(object, Rng(5, RngStream::kTest, i)).scene;
+    if (scene.bodies.size() == 1) continue;
+    const double before = CalcLeastDistance(scene, object.surface, Poses(scene));
+    for (const double relief : {0.005, 0.04}) {
+      const auto X_WB = MoveSurroundingsAway(scene, object.surface, relief);
+      EXPECT_EQ(X_WB[0].matrix(), scene.object().X_WB.matrix());
+      EXPECT_NEAR(CalcLeastDistance(scene, object.surface, X_WB), before + relief, 1e-9);
+    }
+  }
+}
+
+TEST(ObjectSimilarityTest, AnObjectIsLikeItselfHoweverItLies) {
+  const Box box{{0.04, 0.09, 0.20}};
+  const MatrixX3 P = SamplePointCloud(box, 400, Rng(1)).P;
+  const Matrix3 R = Rng(2).Rotation().toRotationMatrix();
+  const MatrixX3 turned = (P * R.transpose()).rowwise() + Vector3(0.1, 0.2, 0.3).transpose();
+  EXPECT_NEAR(CalcAlignedChamfer(P, turned), 0.0, 1e-12);
+  // Two samples of one surface differ by the distance of neighbouring points only.
+  EXPECT_LT(CalcAlignedChamfer(P, SamplePointCloud(box, 400, Rng(9)).P), kLeastUnlikeness);
+  EXPECT_GT(CalcAlignedChamfer(P, SamplePointCloud(Box{{0.04, 0.13, 0.20}}, 400, Rng(3)).P),
+            kLeastUnlikeness);
+}
+
+TEST(ObjectSimilarityTest, TrainingObjectsKeepAwayFromExcludedOnes) {
+  ItemConfig config;
+  const auto cloud = [&](std::int64_t index) {
+    const SceneObject object = MakeItemObject(config, index);
+    return SamplePointCloud(object.object.shape, 400, Rng(1)).P;
+  };
+  // Exclude the very object that would be drawn: another must come in its place.
+  config.excluded.push_back({"evaluation", cloud(3)});
+  EXPECT_GE(CalcAlignedChamfer(cloud(3), config.excluded[0].P), 0.9 * kLeastUnlikeness);
+}
+
+}  // namespace
+}  // namespace pregrasp
