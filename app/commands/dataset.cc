@@ -169,6 +169,7 @@ void AddDataset(CLI::App& app, Action& action) {
   AddLabels(*dataset, action);
   AddMerge(*dataset, action);
   AddDatasetPictures(*dataset, action);
+  AddDatasetProbe(*dataset, action);
 }
 
 }  // namespace pregrasp

@@ -21,6 +21,8 @@ struct ItemOptions {
   ItemConfig Resolve() const;
 };
 
+// Subcommands of it.
 void AddDatasetPictures(CLI::App& dataset, Action& action);
+void AddDatasetProbe(CLI::App& dataset, Action& action);
 
 }  // namespace pregrasp
