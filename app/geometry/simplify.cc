@@ -99,12 +99,11 @@ class Collapser {
       before = num_faces_;
       PushAll();
       while (num_faces_ > target && !queue_.empty()) {
-        const Entry entry = queue_.top();
+        const auto [cost, a, b, stamp] = queue_.top();
         queue_.pop();
-        if (stamp_[entry.a] + stamp_[entry.b] != entry.stamp || Gone(entry.a) || Gone(entry.b)) {
-          continue;
-        }
-        if (MayCollapse(entry)) Collapse(entry);
+        if (stamp_[a] + stamp_[b] != stamp || Gone(a) || Gone(b)) continue;
+        const Vector3 p = Place(a, b).p;
+        if (MayCollapse(a, b, p)) Collapse(a, b, p);
       }
       queue_ = {};
     }
@@ -112,11 +111,12 @@ class Collapser {
   }
 
  private:
+  // Few bytes, as most of the time goes into moving them about the queue: where the edge's ends
+  // come to lie is worked out again when its turn has come.
   struct Entry {
     double cost;
     int a, b;  // a < b; b goes into a
     int stamp;
-    Vector3 p;
 
     bool operator<(const Entry& other) const {  // the queue's top is the largest
       return std::tie(other.cost, other.a, other.b) < std::tie(cost, a, b);
@@ -129,8 +129,8 @@ class Collapser {
     return (points_[face[1]] - points_[face[0]]).cross(points_[face[2]] - points_[face[0]]);
   }
 
-  std::vector<int> NeighboursOf(int v) const {
-    std::vector<int> result;
+  void FindNeighbours(int v, std::vector<int>& result) const {
+    result.clear();
     for (const int f : faces_of_[v]) {
       for (const int w : faces_[f]) {
         if (w != v) result.push_back(w);
@@ -138,50 +138,54 @@ class Collapser {
     }
     std::sort(result.begin(), result.end());
     result.erase(std::unique(result.begin(), result.end()), result.end());
-    return result;
+  }
+
+  struct Placement {
+    Vector3 p;
+    double cost;
+  };
+
+  // Where an edge's ends go best.
+  Placement Place(int a, int b) const {
+    Quadric joint = quadrics_[a];
+    joint.Add(quadrics_[b]);
+    const Vector3 middle = 0.5 * (points_[a] + points_[b]);
+    const Vector3 best = joint.Best();
+    // Far from the edge the solution is that of an ill-posed system.
+    const double reach = 2.0 * (points_[a] - points_[b]).norm();
+    if (best.allFinite() && (best - middle).norm() <= reach) return {best, joint.Cost(best)};
+    Placement placement{middle, joint.Cost(middle)};
+    for (const int end : {a, b}) {
+      const double at_end = joint.Cost(points_[end]);
+      if (at_end < placement.cost) placement = {points_[end], at_end};
+    }
+    return placement;
   }
 
   void Push(int a, int b) {
     if (a > b) std::swap(a, b);
-    Quadric joint = quadrics_[a];
-    joint.Add(quadrics_[b]);
-    const Vector3 middle = 0.5 * (points_[a] + points_[b]);
-    Vector3 best = joint.Best();
-    double cost = joint.Cost(best);
-    // Far from the edge the solution is that of an ill-posed system.
-    const double reach = 2.0 * (points_[a] - points_[b]).norm();
-    if (!best.allFinite() || (best - middle).norm() > reach) {
-      best = middle;
-      cost = joint.Cost(middle);
-      for (const int end : {a, b}) {
-        const double at_end = joint.Cost(points_[end]);
-        if (at_end < cost) {
-          cost = at_end;
-          best = points_[end];
-        }
-      }
-    }
-    queue_.push({cost, a, b, stamp_[a] + stamp_[b], best});
+    queue_.push({Place(a, b).cost, a, b, stamp_[a] + stamp_[b]});
   }
 
   void PushAll() {
-    for (std::size_t v = 0; v < points_.size(); ++v) {
-      if (Gone(static_cast<int>(v))) continue;
-      for (const int w : NeighboursOf(static_cast<int>(v))) {
-        if (w > static_cast<int>(v)) Push(static_cast<int>(v), w);
+    for (int v = 0; v < static_cast<int>(points_.size()); ++v) {
+      FindNeighbours(v, of_a_);
+      for (const int w : of_a_) {
+        if (w > v) Push(v, w);
       }
     }
   }
 
-  bool MayCollapse(const Entry& entry) const {
-    const std::vector<int> of_a = NeighboursOf(entry.a), of_b = NeighboursOf(entry.b);
-    std::vector<int> common;
-    std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
-                          std::back_inserter(common));
-    if (common.size() != 2) return false;
+  bool MayCollapse(int a, int b, const Vector3& p) {
+    FindNeighbours(a, of_a_);
+    FindNeighbours(b, of_b_);
+    common_.clear();
+    std::set_intersection(of_a_.begin(), of_a_.end(), of_b_.begin(), of_b_.end(),
+                          std::back_inserter(common_));
+    if (common_.size() != 2) return false;
     // The last tetrahedron stays.
-    if (of_a.size() == 3 && of_b.size() == 3) return false;
-    return !TurnsOver(entry.a, entry.b, entry.p) && !TurnsOver(entry.b, entry.a, entry.p);
+    if (of_a_.size() == 3 && of_b_.size() == 3) return false;
+    return !TurnsOver(a, b, p) && !TurnsOver(b, a, p);
   }
 
   // Whether moving v to p turns or flattens a face that does not hold w.
@@ -207,9 +211,8 @@ class Collapser {
     return false;
   }
 
-  void Collapse(const Entry& entry) {
-    const int a = entry.a, b = entry.b;
-    points_[a] = entry.p;
+  void Collapse(int a, int b, const Vector3& p) {
+    points_[a] = p;
     quadrics_[a].Add(quadrics_[b]);
     std::vector<int> kept;
     for (const int f : faces_of_[b]) {
@@ -229,7 +232,8 @@ class Collapser {
     faces_of_[a].insert(faces_of_[a].end(), kept.begin(), kept.end());
     std::sort(faces_of_[a].begin(), faces_of_[a].end());
     ++stamp_[a];
-    for (const int v : NeighboursOf(a)) Push(a, v);
+    FindNeighbours(a, of_a_);
+    for (const int v : of_a_) Push(a, v);
   }
 
   TriangleMesh Finish() const {
@@ -265,6 +269,7 @@ class Collapser {
   std::vector<bool> alive_;
   int num_faces_ = 0;
   std::priority_queue<Entry> queue_;
+  std::vector<int> of_a_, of_b_, common_;  // scratch: neighbours of an edge's ends
 };
 
 }  // namespace
