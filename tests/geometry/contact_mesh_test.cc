@@ -9,6 +9,8 @@
 #include "app/geometry/hull.h"
 #include "app/geometry/iso_surface.h"
 #include "app/geometry/mass_properties.h"
+#include "app/geometry/point_cloud.h"
+#include "app/geometry/reconstruct.h"
 #include "app/geometry/signed_distance.h"
 #include "app/geometry/simplify.h"
 #include "tests/geometry/test_shapes.h"
@@ -106,6 +108,33 @@ TEST(ContactMeshTest, HasExactlyTheTrianglesAskedForAndIsAClosedManifold) {
       EXPECT_EQ(CalcEulerNumber(mesh), named.name == "torus" ? 0 : 2) << named.name;
       EXPECT_GT(CalcVolume(mesh), 0.0) << named.name;
       for (int f = 0; f < mesh.F.rows(); ++f) EXPECT_GT(AreaOf(mesh, f), 1e-7) << named.name;
+    }
+  }
+}
+
+TEST(ContactMeshTest, HasAnyEvenNumberOfTrianglesForEachKindOfShape) {
+  Cloud cloud;
+  cloud.points = SamplePointCloud(Box{Vector3(0.1, 0.06, 0.04)}, 600, Rng(1)).P;
+  cloud.mesh = ReconstructSurface(cloud.points, MatrixX3(0, 3)).mesh;
+  Union bottle;
+  bottle.parts.push_back({Cylinder{0.033, 0.17}, At(0, 0, 0.085)});
+  bottle.parts.push_back({Cylinder{0.015, 0.03}, At(0, 0, 0.185)});
+  const std::vector<NamedShape> shapes = {{"box", Box{Vector3(0.3, 0.2, 0.1)}},
+                                          {"cylinder", Cylinder{0.03, 0.1}},
+                                          {"sphere", Sphere{0.03}},
+                                          {"capsule", Capsule{0.02, 0.06}},
+                                          {"mesh", MakeMesh(testing::MakeC(0.03, 0.02))},
+                                          {"cloud", cloud},
+                                          {"union", bottle}};
+  for (const NamedShape& named : shapes) {
+    for (const int triangles : {12, 20, 30, 34, 40, 46, 50, 126, 200}) {
+      const TriangleMesh mesh = Build(named.shape, triangles);
+      EXPECT_EQ(mesh.F.rows(), triangles) << named.name;
+      EXPECT_TRUE(FindDefects(mesh).closed()) << named.name << ' ' << triangles;
+      EXPECT_GT(CalcVolume(mesh), 0.3 * CalcVolume(named.shape)) << named.name << ' ' << triangles;
+      if (triangles < 30) continue;
+      const double size = CalcBounds(named.shape).sizes().maxCoeff();
+      EXPECT_LT(DeviationOf(mesh, named.shape)[0], 0.03 * size) << named.name << ' ' << triangles;
     }
   }
 }
