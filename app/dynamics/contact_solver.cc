@@ -14,9 +14,11 @@ constexpr double kCorrectionSlop = 1e-6;     // [m]
 // Slower impacts do not bounce [m/s].
 constexpr double kMinBounceSpeed = 0.2;
 
-// A bound of the larger eigenvalue of the symmetric 2 x 2 matrix (a, b; b, c), exact where b = 0 or
-// a = c.
-inline double BoundEigenvalue(double a, double b, double c) { return std::max(a, c) + std::abs(b); }
+// The larger eigenvalue of the symmetric 2 x 2 matrix (a, b; b, c).
+inline double LargerEigenvalue(double a, double b, double c) {
+  const double difference = 0.5 * (a - c);
+  return 0.5 * (a + c) + std::sqrt(difference * difference + b * b);
+}
 
 // Rows normal, tangent 1, tangent 2 of point p_W on one body. frame_P holds the columns tangent 1,
 // tangent 2, normal in the body's principal axes.
@@ -46,7 +48,7 @@ inline void SetEffectiveMasses(double inv_mass_sum, PointRows* row) {
   row->K_n1 = K(0, 1);
   row->K_n2 = K(0, 2);
   const double determinant = k_11 * k_22 - k_12 * k_12;
-  const double larger = BoundEigenvalue(k_11, k_12, k_22);
+  const double larger = LargerEigenvalue(k_11, k_12, k_22);
   const double inv_all = 1.0 / (k_nn * determinant * larger);  // one division for all three
   row->inv_K_nn = inv_all * determinant * larger;
   const double inv_determinant = inv_all * k_nn * larger;
@@ -74,8 +76,6 @@ inline void AddToVelocities(const PointRows& row, const Vector3& d, Vector6* y) 
 
 // One Gauss-Seidel update of a point; returns the largest change of its impulse [N s].
 inline double SweepPoint(PointRows& row, Vector6* y) {
-  row.last_change = row.change;
-  row.change.setZero();
   const Vector6& y1 = y[row.first];
   double v_n = row.bias + row.J_first[0].dot(y1);
   if (row.second >= 0) v_n += row.J_second[0].dot(y[row.second]);
@@ -101,12 +101,13 @@ inline double SweepPoint(PointRows& row, Vector6* y) {
     lambda_2 = row.lambda_2 - row.inv_K_tt_max * v_2;
     ProjectOnCircle(limit, &lambda_1, &lambda_2);
   }
-  row.change = Vector3(d_n, lambda_1 - row.lambda_1, lambda_2 - row.lambda_2);
+  const Vector3 d(d_n, lambda_1 - row.lambda_1, lambda_2 - row.lambda_2);
+  row.change += d;
   row.lambda_n = lambda_n;
   row.lambda_1 = lambda_1;
   row.lambda_2 = lambda_2;
-  AddToVelocities(row, row.change, y);
-  return std::max(std::abs(d_n), std::max(std::abs(row.change[1]), std::abs(row.change[2])));
+  AddToVelocities(row, d, y);
+  return std::max(std::abs(d[0]), std::max(std::abs(d[1]), std::abs(d[2])));
 }
 
 // One Gauss-Seidel update of a finger. The spring's impulse is cut to the friction cone, then to
@@ -132,7 +133,7 @@ double SweepFinger(FingerRows& row, Vector6* y) {
     lambda[0] = std::max(0.0, row.lambda[0] - v[0] / row.K(0, 0));
     const Vector2 v_t = v.tail<2>() + row.K.block<2, 1>(1, 0) * (lambda[0] - row.lambda[0]);
     lambda.tail<2>() =
-        row.lambda.tail<2>() - v_t / BoundEigenvalue(row.K(1, 1), row.K(1, 2), row.K(2, 2));
+        row.lambda.tail<2>() - v_t / LargerEigenvalue(row.K(1, 1), row.K(1, 2), row.K(2, 2));
     cut_to_cone(&lambda);
     if (lambda.squaredNorm() > max2) {
       lambda = row.lambda - v / row.K.norm();  // which bounds the largest eigenvalue
@@ -261,6 +262,9 @@ void ContactSolver::AddFinger(const BodyKernel& kernel, const BodyMotion& motion
 
 void ContactSolver::Solve(const StepConfig& config) {
   const int max_sweeps = y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many;
+  // On one body, sweeping to and fro converges faster. Along a row of bodies it does not: a push
+  // travels in the order of the pairs.
+  const bool alternate = y_.size() == 1;
   bool overlap = false;
   for (const PointRows& row : points_) overlap = overlap || row.phi < -kCorrectionSlop;
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
@@ -268,34 +272,40 @@ void ContactSolver::Solve(const StepConfig& config) {
     for (FingerRows& row : fingers_) {
       change = std::max(change, SweepFinger(row, y_.data()) * row.inv_mass);
     }
-    for (PointRows& row : points_) {
+    const bool backward = alternate && sweep % 2 == 1;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      PointRows& row = points_[backward ? points_.size() - 1 - i : i];
       change = std::max(change, SweepPoint(row, y_.data()) * row.inv_mass);
     }
     if (change < config.tolerance) break;
-    if (sweep > 0 && sweep + 1 < max_sweeps) Accelerate();
+    if (sweep % 2 == 1 && sweep + 1 < max_sweeps) Accelerate(sweep > 1 ? CalcStretch() : 0.0);
   }
   z_.assign(y_.size(), Vector6::Zero());
   if (overlap) CorrectPositions(config, max_sweeps);
 }
 
-// Where sweeps make slow progress, what they change is nearly a multiple of what the sweep before
-// changed: goes on along the line that this gives, to where the change would vanish (Anderson's
-// acceleration of depth one; Walker and Ni 2011).
-void ContactSolver::Accelerate() {
-  constexpr double kMinStretch = -0.5, kMaxStretch = 10.0, kStretchStep = 1.0 / 64.0;
-  double along = 0.0, length2 = 0.0;
+// How far to go on, as a share of the progress since the last pair of sweeps (Anderson's
+// acceleration of depth one; Walker and Ni 2011): where sweeps are slow, what a pair changes is
+// nearly a multiple of what the pair before changed, and this leads to where the change vanishes.
+// Where the last pair changed more than the one before there is no such line.
+double ContactSolver::CalcStretch() const {
+  constexpr double kMin = -0.5, kMax = 10.0, kGrain = 1.0 / 64.0;
+  double along = 0.0, length2 = 0.0, last2 = 0.0, now2 = 0.0;
   for (const PointRows& row : points_) {
     const Vector3 d = row.change - row.last_change;
     along += row.change.dot(d);
     length2 += d.squaredNorm();
+    last2 += row.last_change.squaredNorm();
+    now2 += row.change.squaredNorm();
   }
-  if (!(length2 > 0.0 && std::isfinite(length2))) return;
-  // In coarse steps, so that rounding errors are not magnified.
-  const double stretch =
-      kStretchStep *
-      static_cast<int>(std::clamp(-along / length2, kMinStretch, kMaxStretch) / kStretchStep);
+  if (!(now2 < last2 && length2 > 0.0 && std::isfinite(length2))) return 0.0;
+  // In coarse grains, so that rounding errors are not magnified.
+  return kGrain * static_cast<int>(std::clamp(-along / length2, kMin, kMax) / kGrain);
+}
+
+// Goes on by `stretch` and begins the next pair of sweeps.
+void ContactSolver::Accelerate(double stretch) {
   for (PointRows& row : points_) {
-    // What came of the last sweep, measured from what came of the one before.
     const Vector3 progress = row.jump + row.change;
     const double lambda_n = std::max(0.0, row.lambda_n + stretch * progress[0]);
     double lambda_1 = row.lambda_1 + stretch * progress[1];
@@ -306,6 +316,8 @@ void ContactSolver::Accelerate() {
     row.lambda_1 = lambda_1;
     row.lambda_2 = lambda_2;
     AddToVelocities(row, row.jump, y_.data());
+    row.last_change = row.change;
+    row.change.setZero();
   }
 }
 

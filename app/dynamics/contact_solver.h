@@ -26,12 +26,12 @@ struct PointRows {
   double inv_K_nn = 0.0;          ///< K = J M^-1 J^T
   double K_n1 = 0.0, K_n2 = 0.0;  ///< coupling of the normal with the tangents
   double inv_K_11 = 0.0, inv_K_12 = 0.0, inv_K_22 = 0.0;  ///< inverse of the tangential block
-  double inv_K_tt_max = 0.0;                              ///< 1 / a bound of its eigenvalues
+  double inv_K_tt_max = 0.0;                              ///< 1 / its larger eigenvalue
   double inv_mass = 0.0;                                  ///< of the lighter body
   double lambda_n = 0.0, lambda_1 = 0.0, lambda_2 = 0.0;  ///< impulses [N s]
-  Vector3 change = Vector3::Zero();       ///< of the impulses in the last sweep [N s]
-  Vector3 last_change = Vector3::Zero();  ///< in the sweep before
-  Vector3 jump = Vector3::Zero();         ///< between the two, see Accelerate
+  Vector3 change = Vector3::Zero();       ///< of the impulses in this pair of sweeps [N s]
+  Vector3 last_change = Vector3::Zero();  ///< in the pair before
+  Vector3 jump = Vector3::Zero();         ///< between the two, by Accelerate
   double correction = 0.0;                ///< pseudo-impulse of the position correction [N s]
   double correction_bias = 0.0;
   int contact = 0, point = 0;  ///< where it came from
@@ -107,7 +107,8 @@ class ContactSolver {
 
  private:
   double CalcBias(const StepConfig& config, const PointRows& row) const;
-  void Accelerate();
+  double CalcStretch() const;
+  void Accelerate(double stretch);
   void CorrectPositions(const StepConfig& config, int max_sweeps);
 
   std::vector<Vector6> y_, z_;
