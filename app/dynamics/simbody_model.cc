@@ -133,13 +133,14 @@ std::vector<BodyState> SimbodyModel::GetDefaultState() const {
   return bodies;
 }
 
-double SimbodyModel::CalcEnergy(const std::vector<BodyState>& bodies, const Vector3& gravity) {
+Energy SimbodyModel::CalcEnergy(const std::vector<BodyState>& bodies, const Vector3& gravity) {
   impl_->SetState(bodies);
   impl_->system.realize(impl_->state, SimTK::Stage::Velocity);
-  double energy = impl_->matter.calcKineticEnergy(impl_->state);
+  Energy energy;
+  energy.kinetic = impl_->matter.calcKineticEnergy(impl_->state);
   for (const auto& body : impl_->bodies) {
-    energy -= body.getBodyMass(impl_->state) *
-              gravity.dot(FromSimTK(body.findMassCenterLocationInGround(impl_->state)));
+    energy.potential -= body.getBodyMass(impl_->state) *
+                        gravity.dot(FromSimTK(body.findMassCenterLocationInGround(impl_->state)));
   }
   return energy;
 }

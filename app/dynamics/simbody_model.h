@@ -9,6 +9,11 @@
 
 namespace pregrasp {
 
+/// Of all movable bodies [J].
+struct Energy {
+  double kinetic = 0.0, potential = 0.0;
+};
+
 /// The scene's movable bodies as a Simbody multibody system, with one State to work in. The only
 /// place in app/dynamics that knows Simbody. Not to be shared between threads while in use.
 class SimbodyModel {
@@ -25,8 +30,8 @@ class SimbodyModel {
   /// The movables' poses and velocities (zero) in the system's default state.
   std::vector<BodyState> GetDefaultState() const;
 
-  /// Kinetic plus potential energy [J].
-  double CalcEnergy(const std::vector<BodyState>& bodies, const Vector3& gravity);
+  /// Potential energy is 0 at W's origin.
+  Energy CalcEnergy(const std::vector<BodyState>& bodies, const Vector3& gravity);
 
   /// Begins a step: takes poses and velocities, adds gravity's impulse, and gives the motions that
   /// the contacts start from.

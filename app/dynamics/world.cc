@@ -1,6 +1,8 @@
 #include "app/dynamics/world.h"
 
+#include <algorithm>
 #include <mutex>
+#include <utility>
 
 #include "app/core/check.h"
 #include "app/core/error.h"
@@ -138,6 +140,13 @@ struct World::Impl {
     models.push_back(std::move(model));
   }
 
+  Energy CalcEnergy(const WorldState& state) {
+    std::unique_ptr<SimbodyModel> model = TakeModel();
+    const Energy energy = model->CalcEnergy(state.bodies, scene.gravity);
+    ReturnModel(std::move(model));
+    return energy;
+  }
+
   // Contacts and fingers, from scratch->motions to the solver's velocities.
   void SolveContacts(const WorldState& state, StepScratch* scratch) const {
     collision.FindContacts(kernels, scratch->motions, config.dt, &scratch->collision,
@@ -225,6 +234,18 @@ void World::Step(WorldState& state, std::vector<ContactPoint>* contacts) const {
   impl.EndStep(scratch, &state, contacts);
 }
 
+StepTrace World::StepWithTrace(WorldState& state) const {
+  StepTrace trace;
+  Step(state, &trace.contacts);
+  for (const ContactPoint& contact : trace.contacts) {
+    trace.max_penetration = std::max(trace.max_penetration, -contact.phi);
+  }
+  const Energy energy = impl_->CalcEnergy(state);
+  trace.kinetic_energy = energy.kinetic;
+  trace.potential_energy = energy.potential;
+  return trace;
+}
+
 void World::StepWithSimbody(WorldState& state, std::vector<ContactPoint>* contacts) const {
   const Impl& impl = *impl_;
   StepScratch& scratch = GetThreadScratch();
@@ -238,10 +259,8 @@ void World::StepWithSimbody(WorldState& state, std::vector<ContactPoint>* contac
 }
 
 double World::CalcEnergy(const WorldState& state) const {
-  std::unique_ptr<SimbodyModel> model = impl_->TakeModel();
-  const double energy = model->CalcEnergy(state.bodies, impl_->scene.gravity);
-  impl_->ReturnModel(std::move(model));
-  return energy;
+  const Energy energy = impl_->CalcEnergy(state);
+  return energy.kinetic + energy.potential;
 }
 
 }  // namespace pregrasp

@@ -66,6 +66,15 @@ struct ContactPoint {
   Vector3 v_slip_W = Vector3::Zero();  ///< velocity of b along a's surface after the step [m/s]
 };
 
+/// What one step did, for pictures, logs and checks. Forces and slip of the fingers are in the
+/// state.
+struct StepTrace {
+  std::vector<ContactPoint> contacts;  ///< those that carry no force too
+  double max_penetration = 0.0;        ///< largest overlap before the step [m], at least 0
+  double kinetic_energy = 0.0;         ///< of all movables after the step [J]
+  double potential_energy = 0.0;       ///< in the scene's gravity, 0 at W's origin [J]
+};
+
 /// Everything that the next step depends on: a copyable value. Restoring a copy, even in the middle
 /// of a contact, gives the same bytes from then on.
 struct WorldState {
@@ -114,11 +123,14 @@ class World {
   /// @param contacts  filled with the step's contact points if given.
   void Step(WorldState& state, std::vector<ContactPoint>* contacts = nullptr) const;
 
+  /// The same step, and what it did; slower, as the energies come from Simbody.
+  StepTrace StepWithTrace(WorldState& state) const;
+
   /// The same step computed entirely through Simbody's State and operators: the oracle for Step in
   /// tests, and the certifier of plans.
   void StepWithSimbody(WorldState& state, std::vector<ContactPoint>* contacts = nullptr) const;
 
-  /// Kinetic plus potential energy of the movable bodies [J], through Simbody.
+  /// Kinetic plus potential energy of the movable bodies [J], by Simbody.
   double CalcEnergy(const WorldState& state) const;
 
  private:

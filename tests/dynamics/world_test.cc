@@ -117,6 +117,47 @@ TEST(WorldTest, ContactPointsCarryTheWeight) {
   EXPECT_LT((force - Vector3(0, 0, -0.3 * kGravity)).norm(), 1e-4);
 }
 
+TEST(WorldTest, ATraceTellsOfASlidingBoxItsFrictionItsSlipAndTheEnergyTheyTake) {
+  const double mass = 0.3, mu = 0.5;
+  const World world(MakeBoxOnTable());
+  WorldState state = world.InitialState();
+  state.bodies[0].v_WB = Vector3(0.8, 0.3, 0.0);
+  Simulate(world, 0.05, &state);
+  WorldState untraced = state;
+  const double before = world.CalcEnergy(state);
+  double after = 0.0, work = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    const Vector3 v_before = state.bodies[0].v_WB;
+    const StepTrace trace = world.StepWithTrace(state);
+    const Vector3 v_mean = 0.5 * (v_before + state.bodies[0].v_WB);
+    world.Step(untraced);
+    ASSERT_EQ(BytesOf(state), BytesOf(untraced));
+    ASSERT_EQ(trace.contacts.size(), 4U);
+    for (const ContactPoint& contact : trace.contacts) {
+      const double f_n = contact.f_W.dot(contact.nhat_W);
+      const Vector3 f_t = contact.f_W - f_n * contact.nhat_W;
+      ASSERT_GT(f_n, 0.0);
+      EXPECT_NEAR(f_t.norm(), mu * f_n, 1e-9);
+      // The table (body b) slips backwards under the box and is dragged along.
+      EXPECT_LT(f_t.normalized().dot(contact.v_slip_W.normalized()), -0.9999);
+      EXPECT_LT((contact.v_slip_W + state.bodies[0].v_WB).norm(), 0.01);
+      work -= f_t.dot(v_mean) * world.config().dt;
+    }
+    EXPECT_LT(trace.max_penetration, 1e-6);
+    after = trace.kinetic_energy + trace.potential_energy;
+    EXPECT_NEAR(trace.kinetic_energy, 0.5 * mass * state.bodies[0].v_WB.squaredNorm(), 1e-6);
+  }
+  EXPECT_NEAR(after - before, work, 1e-3 * std::abs(work));
+}
+
+TEST(WorldTest, ATraceTellsHowDeepABoxStartedInItsTable) {
+  Scene scene = MakeBoxOnTable();
+  scene.object().X_WB = At(0, 0, 0.0295);
+  const World world(scene);
+  WorldState state = world.InitialState();
+  EXPECT_NEAR(world.StepWithTrace(state).max_penetration, 5e-4, 1e-12);
+}
+
 TEST(WorldTest, EnergyIsKineticPlusPotential) {
   const World world(MakeBoxOnTable());
   WorldState state = world.InitialState();
