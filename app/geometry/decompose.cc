@@ -1,106 +1,30 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "app/core/error.h"
 #include "app/core/rng.h"
 #include "app/core/text.h"
+#include "app/geometry/cut_finder.h"
+#include "app/geometry/distance_bounds.h"
 #include "app/geometry/hull.h"
 #include "app/geometry/mesh_cut.h"
 #include "app/geometry/mesh_distance.h"
 #include "app/geometry/mesh_topology.h"
 #include "app/geometry/signed_distance.h"
 #include "app/geometry/tessellate.h"
+#include "app/geometry/triangle_samples.h"
 
 namespace pregrasp {
 namespace {
 
-constexpr int kSamples = 700;           // surface points of a piece that judge where to cut
-constexpr int kPairs = 1500;            // pairs of them
-constexpr int kTrials = 4;              // cuts that are tried out, the best by pairs
-constexpr int kHullSamples = 160;       // points of a hull that judge how far it reaches outside
-constexpr int kOvercut = 3;             // pieces before merging, in multiples of those wanted
-constexpr double kSmallestSide = 0.01;  // share of a piece's samples on either side of a cut
-
-// The distance to a mesh on a coarse grid. Distance changes by at most the way between two points,
-// so that the nearest node gives bounds, which often answer a query without the mesh.
-class DistanceBounds {
- public:
-  explicit DistanceBounds(const MeshDistance& distance) : distance_(distance) {
-    const AlignedBox& bounds = distance.bounds();
-    cell_ = bounds.sizes().maxCoeff() / kResolution;
-    for (int k = 0; k < 3; ++k) {
-      count_[k] = 1 + static_cast<int>(std::ceil(bounds.sizes()[k] / cell_));
-    }
-    values_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
-    std::size_t i = 0;
-    for (int z = 0; z < count_[2]; ++z) {
-      for (int y = 0; y < count_[1]; ++y) {
-        for (int x = 0; x < count_[0]; ++x) values_[i++] = distance.Calc(Node(x, y, z));
-      }
-    }
-  }
-
-  // Exact where it is near the surface, else within a tenth.
-  double CalcRoughly(const Vector3& p) const {
-    const auto [value, slack] = Nearest(p);
-    return std::abs(value) > 10.0 * slack ? value : distance_.Calc(p);
-  }
-
-  // The larger of the distance and `floor`.
-  double CalcAbove(const Vector3& p, double floor) const {
-    const auto [value, slack] = Nearest(p);
-    return value + slack <= floor ? floor : std::max(floor, distance_.Calc(p));
-  }
-
- private:
-  static constexpr int kResolution = 32;
-
-  Vector3 Node(int x, int y, int z) const {
-    return distance_.bounds().min() + cell_ * Vector3(x, y, z);
-  }
-
-  // The value of the node nearest to p, and how far p is from it.
-  std::pair<double, double> Nearest(const Vector3& p) const {
-    std::array<int, 3> at{};
-    const Vector3 q = (p - distance_.bounds().min()) / cell_;
-    for (int k = 0; k < 3; ++k) {
-      at[k] = static_cast<int>(std::clamp(std::lround(q[k]), 0L, static_cast<long>(count_[k] - 1)));
-    }
-    const std::size_t i = (static_cast<std::size_t>(at[2]) * count_[1] + at[1]) * count_[0] + at[0];
-    return {values_[i], (p - Node(at[0], at[1], at[2])).norm()};
-  }
-
-  const MeshDistance& distance_;
-  double cell_ = 1.0;
-  std::array<int, 3> count_{};
-  std::vector<double> values_;
-};
-
-Vector3 PointOn(const Triangle& t, Rng& rng) {
-  const double s = std::sqrt(rng.Uniform()), u = rng.Uniform();
-  return (1.0 - s) * t[0] + s * (1.0 - u) * t[1] + s * u * t[2];
-}
-
-// `count` points spread over triangles by area; `sums` are the running sums of their areas.
-template <typename GetTriangle, typename Visit>
-void VisitSamples(const std::vector<double>& sums, int count, Rng& rng, GetTriangle&& triangle,
-                  Visit&& visit) {
-  for (int i = 0; i < count; ++i) {
-    const double at = (i + rng.Uniform()) / count * sums.back();
-    const auto it = std::lower_bound(sums.begin(), sums.end() - 1, at);
-    visit(PointOn(triangle(static_cast<int>(it - sums.begin())), rng));
-  }
-}
-
-double AreaOf(const Triangle& t) { return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm(); }
-
-Triangle FaceOf(const TriangleMesh& mesh, int f) {
-  return {mesh.V.row(mesh.F(f, 0)), mesh.V.row(mesh.F(f, 1)), mesh.V.row(mesh.F(f, 2))};
-}
+constexpr int kTrials = 4;         // cuts that are tried out, the best by pairs
+constexpr int kHullSamples = 160;  // points of a hull that judge how far it reaches outside
+constexpr int kOvercut = 3;        // pieces before merging, in multiples of those wanted
 
 // One or, after merging, several parts of the solid, with their joint hull.
 struct Piece {
@@ -118,13 +42,14 @@ class Decomposer {
         config_(config),
         distance_(mesh),
         roughly_(distance_),
-        size_(distance_.bounds().sizes().norm()) {}
+        size_(distance_.bounds().sizes().norm()),
+        cuts_(mesh, roughly_, size_) {}
 
   std::vector<TriangleMesh> Run() {
     Piece all;
     all.parts.push_back(MakeSolidPart(mesh_));
     Close(all);
-    if (all.protrusion > config_.concavity) FindReflexPlanes();
+    if (all.protrusion > config_.concavity) cuts_.FindReflexPlanes();
     pieces_.push_back(std::move(all));
     while (static_cast<int>(pieces_.size()) < kOvercut * config_.max_pieces && CutWorst()) {
     }
@@ -137,68 +62,11 @@ class Decomposer {
   }
 
  private:
-  struct Pair {  // of surface samples, and how far the line between them leaves the solid, squared
-    int i, j;
-    double energy;
-  };
-  struct Cut {
-    Plane plane;
-    double energy = 0.0;
-  };
   struct Halves {
     std::vector<Piece> pieces;  // one when the other has no volume
     double worst = std::numeric_limits<double>::infinity();
     double sum = 0.0;
   };
-
-  // Planes along the faces at an edge where the surface turns inward: natural cuts, as at the foot
-  // of a wall. The longest and sharpest edges come first.
-  void FindReflexPlanes() {
-    struct Reflex {
-      double weight;
-      int face, neighbour;
-      Vector3 p;
-    };
-    std::vector<Reflex> edges;
-    const auto neighbours = FindNeighbours(mesh_);
-    std::vector<Vector3> normals(mesh_.F.rows());
-    for (int f = 0; f < mesh_.F.rows(); ++f) {
-      const Triangle t = FaceOf(mesh_, f);
-      normals[f] = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-    }
-    constexpr double kSinSharp = 0.1;
-    for (int f = 0; f < mesh_.F.rows(); ++f) {
-      const Triangle t = FaceOf(mesh_, f);
-      for (int i = 0; i < 3; ++i) {
-        const int g = neighbours[f][i];
-        if (g < f) continue;
-        const Vector3 edge = t[(i + 1) % 3] - t[i];
-        const double turn = normals[f].cross(normals[g]).dot(edge);  // below 0 where it is reflex
-        if (turn < -kSinSharp * edge.norm()) edges.push_back({turn, f, g, t[i] + 0.5 * edge});
-      }
-    }
-    std::stable_sort(edges.begin(), edges.end(),
-                     [](const Reflex& a, const Reflex& b) { return a.weight < b.weight; });
-    constexpr std::size_t kMaxPlanes = 96;
-    for (const Reflex& edge : edges) {
-      if (reflex_planes_.size() >= kMaxPlanes) break;
-      const Vector3& n = normals[edge.face];
-      const Vector3& m = normals[edge.neighbour];
-      for (const Vector3& nhat : {n, m, Vector3((n - m).normalized())}) {
-        AddReflexPlane({nhat, nhat.dot(edge.p)});
-      }
-    }
-  }
-
-  void AddReflexPlane(const Plane& plane) {
-    if (!plane.nhat.allFinite()) return;
-    for (const Plane& other : reflex_planes_) {
-      const double along = other.nhat.dot(plane.nhat);
-      const double apart = other.offset - std::copysign(1.0, along) * plane.offset;
-      if (std::abs(along) > 0.9995 && std::abs(apart) < 0.005 * size_) return;
-    }
-    reflex_planes_.push_back(plane);
-  }
 
   // Fills in hull, bounds and protrusion from the parts; false for a piece without volume.
   bool Close(Piece& piece) const {
@@ -240,93 +108,6 @@ class Decomposer {
     return farthest;
   }
 
-  static MatrixX3 SampleSurface(const Piece& piece, Rng& rng) {
-    std::vector<double> sums;
-    std::vector<const Triangle*> triangles;
-    double sum = 0.0;
-    for (const SolidPart& part : piece.parts) {
-      for (const Triangle& t : part.surface) {
-        sums.push_back(sum += AreaOf(t));
-        triangles.push_back(&t);
-      }
-    }
-    MatrixX3 P(kSamples, 3);
-    int next = 0;
-    VisitSamples(
-        sums, kSamples, rng, [&](int i) { return *triangles[i]; },
-        [&](const Vector3& p) { P.row(next++) = p.transpose(); });
-    return P;
-  }
-
-  std::vector<Pair> FindPairs(const MatrixX3& P, Rng& rng) const {
-    std::vector<Pair> pairs;
-    for (int k = 0; k < kPairs; ++k) {
-      const int i = static_cast<int>(rng.UniformInt(kSamples));
-      const int j = static_cast<int>(rng.UniformInt(kSamples));
-      double farthest = 0.0;
-      for (const double s : {0.25, 0.5, 0.75}) {
-        const Vector3 p = (1.0 - s) * P.row(i) + s * P.row(j);
-        farthest = std::max(farthest, roughly_.CalcRoughly(p));
-      }
-      if (farthest > 0.0) pairs.push_back({i, j, farthest * farthest});
-    }
-    return pairs;
-  }
-
-  // Planes at reflex edges, and across axes that may suit the piece.
-  std::vector<Plane> ListPlanes(const MatrixX3& P) const {
-    const Vector3 mean = P.colwise().mean();
-    const MatrixX3 centred = P.rowwise() - mean.transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix3> axes(centred.transpose() * centred);
-    std::vector<Vector3> directions{Vector3::UnitX(), Vector3::UnitY(), Vector3::UnitZ()};
-    for (int k = 0; k < 3; ++k) directions.emplace_back(axes.eigenvectors().col(k));
-    for (int k = 0; k < 3; ++k) {
-      const Vector3 u = directions[3 + (k + 1) % 3], v = directions[3 + (k + 2) % 3];
-      directions.emplace_back((u + v).normalized());
-      directions.emplace_back((u - v).normalized());
-    }
-    std::vector<Plane> planes = reflex_planes_;
-    constexpr int kAcross = 9;
-    for (const Vector3& nhat : directions) {
-      const VectorX heights = P * nhat;
-      const double low = heights.minCoeff(), high = heights.maxCoeff();
-      for (int i = 1; i <= kAcross; ++i) {
-        planes.push_back({nhat, low + (high - low) * i / (kAcross + 1)});
-      }
-      planes.push_back({nhat, nhat.dot(mean)});
-    }
-    return planes;
-  }
-
-  // The few cuts that leave least energy: the sum over pairs on the same side.
-  std::vector<Cut> FindCuts(const Piece& piece) const {
-    Rng rng(0, RngStream::kDecomposition, 1);
-    const MatrixX3 P = SampleSurface(piece, rng);
-    const std::vector<Pair> pairs = FindPairs(P, rng);
-    double total = 0.0;
-    for (const Pair& pair : pairs) total += pair.energy;
-    std::vector<Cut> cuts;
-    std::vector<bool> above(kSamples);
-    for (const Plane& plane : ListPlanes(P)) {
-      const VectorX heights = P * plane.nhat;
-      int count = 0;
-      for (int i = 0; i < kSamples; ++i) {
-        above[i] = heights[i] > plane.offset;
-        count += above[i] ? 1 : 0;
-      }
-      if (count < kSmallestSide * kSamples || count > (1.0 - kSmallestSide) * kSamples) continue;
-      // Among cuts that do about the same, the most even one.
-      double energy = 0.02 * total * std::abs(2.0 * count / kSamples - 1.0);
-      for (const Pair& pair : pairs) {
-        if (above[pair.i] == above[pair.j]) energy += pair.energy;
-      }
-      cuts.push_back({plane, energy});
-    }
-    std::stable_sort(cuts.begin(), cuts.end(),
-                     [](const Cut& a, const Cut& b) { return a.energy < b.energy; });
-    return cuts;
-  }
-
   Halves CutAlong(const Piece& piece, const Plane& plane) const {
     Halves halves;
     halves.worst = 0.0;
@@ -348,7 +129,7 @@ class Decomposer {
   Halves FindHalves(const Piece& piece) const {
     Halves best;
     std::vector<Plane> tried;
-    for (const Cut& cut : FindCuts(piece)) {
+    for (const Cut& cut : cuts_.Find(piece.parts)) {
       const bool similar = std::any_of(tried.begin(), tried.end(), [&](const Plane& other) {
         const double along = other.nhat.dot(cut.plane.nhat);
         const double apart = other.offset - std::copysign(1.0, along) * cut.plane.offset;
@@ -542,7 +323,7 @@ class Decomposer {
   MeshDistance distance_;
   DistanceBounds roughly_;
   double size_;
-  std::vector<Plane> reflex_planes_;
+  CutFinder cuts_;
   std::vector<Piece> pieces_;
 };
 
