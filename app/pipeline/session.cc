@@ -174,7 +174,7 @@ void Session::Move(const std::shared_ptr<Simulation>& simulation, Finger finger,
 }
 
 void Session::Wait(const std::shared_ptr<Simulation>& simulation, double seconds) {
-  Act(simulation, fmt::format("{:.3g} s pass.", seconds),
+  Act(simulation, fmt::format("Nothing is moved for {:.3g} s.", seconds),
       {{"action", "wait"}, {"seconds", seconds}},
       [&] { simulation->Step(simulation->StepsIn(seconds)); });
 }
