@@ -1,8 +1,10 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,8 +45,7 @@ double Mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-// One scene, contacts that fingertips can have at its start, and what is said of them as the object
-// moves.
+// What is said of a scene as its object moves.
 class Prober {
  public:
   explicit Prober(const ProbeOptions& options)
@@ -55,46 +56,43 @@ class Prober {
                                 Rng(options.seed, RngStream::kPointCloud))),
         score_(ScoreFunction::Load(options.score)),
         scorer_(score_, scene_, cloud_, world_.environment(), pool_) {
-    const auto X_WB = world_.StartPoses();
-    const ContactSampler sampler(world_, X_WB, {});
-    LabelConfig reachable;
-    reachable.anywhere = 0.0;
     for (int which = 0; which < kCases; ++which) {
-      for (int i = 0; i < options.contacts; ++i) {
-        Rng rng(options.seed, RngStream::kDataset, which, i);
-        contacts_[which].push_back(
-            SampleLabelContacts(world_, sampler, {}, which, reachable, X_WB, rng));
-      }
+      start_contacts_[which] = SampleContacts(world_.StartPoses(), which);
     }
     if (options.tries > 0) generator_ = GraspGenerator::Load(options.generator);
   }
 
-  // The mean learned score with the object moved by p_W.
-  double CalcScore(const Vector3& p_W, int which) const {
-    std::vector<ScoredState> states;
-    for (const PlanningContacts& contacts : contacts_[which]) {
-      states.push_back({world_.StartPoses(), ToPlacement(contacts)});
-      states.back().X_WB[0].translation() += p_W;
-    }
-    return Mean(scorer_.Score(states));
+  std::vector<RigidTransform> PosesMovedBy(const Vector3& p_W) const {
+    std::vector<RigidTransform> X_WB = world_.StartPoses();
+    X_WB[0].translation() += p_W;
+    return X_WB;
   }
 
-  // The mean label there: what the score was to learn.
-  double CalcLabels(const Vector3& p_W, int which) {
-    Scene moved = scene_;
-    moved.object().X_WB.translation() += p_W;
-    const GraspWorld world = MakeTrainingWorld(moved);
-    const CloudStructure structure =
-        generator_->BuildStructure(cloud_.P, scene_.object().X_WB.linear());
-    LabelConfig config;
-    config.tries = options_.tries;
-    std::vector<double> values(contacts_[which].size());
-    pool_.ParallelFor(static_cast<int>(values.size()), [&](int i, int) {
-      const Rng rng(options_.seed, RngStream::kDataset, kCases + which, i);
-      values[i] = CalcLabel(world, *generator_, cloud_, structure, contacts_[which][i], config, rng)
-                      .Value();
-    });
-    return Mean(values);
+  // The mean score of the contacts drawn at the start, which move with the object.
+  double CalcKept(const std::vector<RigidTransform>& X_WB, int which) const {
+    return Mean(Score(X_WB, start_contacts_[which]));
+  }
+
+  struct Best {
+    double score = 0.0, label = 0.0;  // means
+  };
+  // Of all contacts that fingertips can have now, the tenth that scores best.
+  Best CalcBest(const std::vector<RigidTransform>& X_WB, int which) {
+    const std::vector<PlanningContacts> contacts = SampleContacts(X_WB, which);
+    const std::vector<double> scores = Score(X_WB, contacts);
+    std::vector<int> order(contacts.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return scores[a] > scores[b]; });
+    order.resize((contacts.size() + 9) / 10);
+    Best best;
+    std::vector<PlanningContacts> chosen;
+    for (const int i : order) {
+      best.score += scores[i] / static_cast<double>(order.size());
+      chosen.push_back(contacts[i]);
+    }
+    if (options_.tries > 0) best.label = Mean(Label(X_WB, chosen));
+    return best;
   }
 
  private:
@@ -103,37 +101,73 @@ class Prober {
     return LoadSceneFile(file, settings);
   }
 
+  std::vector<PlanningContacts> SampleContacts(const std::vector<RigidTransform>& X_WB,
+                                               int which) const {
+    const ContactSampler sampler(world_, X_WB, {});
+    LabelConfig config;
+    config.anywhere = 0.0;
+    std::vector<PlanningContacts> contacts;
+    for (int i = 0; i < options_.contacts; ++i) {
+      Rng rng(options_.seed, RngStream::kDataset, which, i);
+      contacts.push_back(SampleLabelContacts(world_, sampler, {}, which, config, X_WB, rng));
+    }
+    return contacts;
+  }
+
+  std::vector<double> Score(const std::vector<RigidTransform>& X_WB,
+                            const std::vector<PlanningContacts>& contacts) const {
+    std::vector<ScoredState> states;
+    for (const PlanningContacts& each : contacts) states.push_back({X_WB, ToPlacement(each)});
+    return scorer_.Score(states);
+  }
+
+  // What the score was to learn.
+  std::vector<double> Label(const std::vector<RigidTransform>& X_WB,
+                            const std::vector<PlanningContacts>& contacts) {
+    Scene moved = scene_;
+    for (std::size_t b = 0; b < X_WB.size(); ++b) moved.bodies[b].X_WB = X_WB[b];
+    const GraspWorld world = MakeTrainingWorld(moved);
+    const CloudStructure structure =
+        generator_->BuildStructure(cloud_.P, scene_.object().X_WB.linear());
+    LabelConfig config;
+    config.tries = options_.tries;
+    std::vector<double> values(contacts.size());
+    pool_.ParallelFor(static_cast<int>(values.size()), [&](int i, int) {
+      const Rng rng(options_.seed, RngStream::kDataset, kCases, i);
+      values[i] =
+          CalcLabel(world, *generator_, cloud_, structure, contacts[i], config, rng).Value();
+    });
+    return values;
+  }
+
   const ProbeOptions& options_;
   Scene scene_;
   GraspWorld world_;
   PointCloud cloud_;
   ScoreFunction score_;
-  ThreadPool pool_;
+  mutable ThreadPool pool_;
   LearnedScorer scorer_;
   std::optional<GraspGenerator> generator_;
-  std::array<std::vector<PlanningContacts>, kCases> contacts_;
+  std::array<std::vector<PlanningContacts>, kCases> start_contacts_;
 };
 
 int Probe(const ProbeOptions& options) {
   const Vector3 direction(options.direction[0], options.direction[1], options.direction[2]);
   if (!(direction.norm() > 0.0)) throw InputError("--direction", "", "not zero", "zero");
   Prober prober(options);
-  fmt::print("moved [mm]  score: thumb index  both{}\n",
-             options.tries > 0 ? "   label: thumb index  both" : "");
+  fmt::print("{:>10}   {:<19}   {:<19}{}\n", "moved [mm]", "kept: thumb index both",
+             "best: thumb index both", options.tries > 0 ? "   label of best" : "");
   for (int step = 0; step <= options.steps; ++step) {
     const double moved = options.distance * step / options.steps;
-    const Vector3 p_W = moved * direction.normalized();
-    fmt::print("{:10.1f}       ", 1e3 * moved);
+    const auto X_WB = prober.PosesMovedBy(moved * direction.normalized());
+    std::string kept, best, label;
     for (int which = 0; which < kCases; ++which) {
-      fmt::print(" {:5.3f}", prober.CalcScore(p_W, which));
+      kept += fmt::format(" {:6.3f}", prober.CalcKept(X_WB, which));
+      const Prober::Best found = prober.CalcBest(X_WB, which);
+      best += fmt::format(" {:6.3f}", found.score);
+      if (options.tries > 0) label += fmt::format(" {:6.3f}", found.label);
     }
-    if (options.tries > 0) {
-      fmt::print("         ");
-      for (int which = 0; which < kCases; ++which) {
-        fmt::print(" {:5.3f}", prober.CalcLabels(p_W, which));
-      }
-    }
-    fmt::print("\n");
+    fmt::print("{:10.1f}   {}   {}   {}\n", 1e3 * moved, kept, best, label);
     std::fflush(stdout);
   }
   return 0;
