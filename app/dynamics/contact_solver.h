@@ -23,8 +23,7 @@ struct PointRows {
   double phi = 0.0;            ///< gap [m]
   double bias = 0.0;           ///< the normal velocity may not fall below -bias [m/s]
   double friction = 0.0;
-  double inv_K_nn = 0.0;          ///< K = J M^-1 J^T
-  double K_n1 = 0.0, K_n2 = 0.0;  ///< coupling of the normal with the tangents
+  double K_nn = 0.0, inv_K_nn = 0.0;                      ///< K = J M^-1 J^T
   double inv_K_11 = 0.0, inv_K_12 = 0.0, inv_K_22 = 0.0;  ///< inverse of the tangential block
   double inv_K_tt_max = 0.0;                              ///< 1 / its larger eigenvalue
   double inv_mass = 0.0;                                  ///< of the lighter body
@@ -35,6 +34,13 @@ struct PointRows {
   double correction = 0.0;                ///< pseudo-impulse of the position correction [N s]
   double correction_bias = 0.0;
   int contact = 0, point = 0;  ///< where it came from
+};
+
+/// Two points of one contact whose normal impulses are solved together, or a single point.
+struct PointPair {
+  int a = 0, b = -1;                                ///< indices of points; b is -1 for a single one
+  double K_ab = 0.0;                                ///< coupling of the normals
+  double inv_aa = 0.0, inv_bb = 0.0, inv_ab = 0.0;  ///< inverse of their K
 };
 
 /// A finger's contact with the object: rows along the inward normal and two tangents, with the
@@ -109,11 +115,14 @@ class ContactSolver {
   double CalcBias(const StepConfig& config, const PointRows& row) const;
   double CalcStretch() const;
   void Accelerate(double stretch);
+  void AddPairs(int first, int size);
+  void AddPair(int a, int b, double K_ab);
   void CorrectPositions(const StepConfig& config, int max_sweeps);
 
   std::vector<Vector6> y_, z_;
   std::vector<PointRows> rows_;  ///< memory for the points
   std::span<PointRows> points_;
+  std::vector<PointPair> pairs_;
   std::vector<FingerRows> fingers_;
   std::vector<Matrix3> frames_;  ///< by contact: tangent 1, tangent 2, normal
 };
