@@ -3,24 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "app/core/check.h"
 #include "app/geometry/cloud_flood.h"
 #include "app/geometry/cloud_planes.h"
-#include "app/geometry/hull.h"
 #include "app/geometry/iso_surface.h"
 #include "app/geometry/mesh_distance.h"
 #include "app/geometry/mesh_topology.h"
-#include "app/geometry/point_index.h"
+#include "app/geometry/point_hull.h"
 #include "app/geometry/simplify.h"
 #include "app/geometry/surface_height.h"
 
 namespace pregrasp {
 namespace {
+
+const char* const kClosed = "points all over a closed surface";
 
 constexpr int kMinPoints = 100;
 constexpr int kMaxPoints = 15'000;
@@ -137,42 +140,6 @@ ScalarGrid Evaluate(const SampledCloud& cloud, const CloudFlood& flood, double d
   return grid;
 }
 
-// The convex hull of all points, beyond which the surface does not reach: where chance left a
-// corner bare, the planes around it would.
-class PointHull {
- public:
-  explicit PointHull(const SampledCloud& cloud)
-      : distance_(CalcConvexHull(cloud.P)),
-        index_(cloud.P, 2.0 * cloud.spacing),
-        N_(cloud.N),
-        spacing_(cloud.spacing) {}
-
-  // Across an edge the hull cuts off what lies between the points on either side: the less normals
-  // there point the way that a vertex sticks out, the farther it may.
-  void PullIn(TriangleMesh& mesh) const {
-    constexpr double kAlongNormal = 0.05, kAcross = 0.4, kSlope = 1.2;  // in spacings
-    constexpr int kFew = 8;
-    std::vector<int> found;
-    for (int v = 0; v < mesh.V.rows(); ++v) {
-      const Vector3 p = mesh.V.row(v);
-      if (distance_.Calc(p) <= kAlongNormal * spacing_) continue;
-      const NearestPoint nearest = distance_.FindNearest(p);
-      const Vector3 out = (p - nearest.p_B) / nearest.distance;
-      index_.FindNearest(nearest.p_B, kFew, found);
-      double cos_most = 0.0;
-      for (const int i : found) cos_most = std::max(cos_most, out.dot(N_.row(i)));
-      const double limit = spacing_ * std::min(kAlongNormal + kSlope * (1.0 - cos_most), kAcross);
-      if (nearest.distance > limit) mesh.V.row(v) = nearest.p_B + limit * out;
-    }
-  }
-
- private:
-  MeshDistance distance_;
-  PointIndex index_;
-  MatrixX3 N_;
-  double spacing_;
-};
-
 // The component with the largest volume.
 TriangleMesh LargestComponent(const TriangleMesh& mesh) {
   if (mesh.F.rows() == 0) return mesh;
@@ -193,25 +160,33 @@ TriangleMesh LargestComponent(const TriangleMesh& mesh) {
   return TakeFaces(mesh, keep);
 }
 
-std::vector<double> MeasureErrors(const MatrixX3& P, const TriangleMesh& mesh) {
-  const MeshDistance distance(mesh);
-  std::vector<double> errors;
-  for (int i = 0; i < P.rows(); ++i) errors.push_back(std::abs(distance.Calc(P.row(i))));
-  return errors;
-}
-
-double Mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+// How far the grid's surface is from the points, mean, by its values between nodes [m].
+double MeanHeight(const ScalarGrid& grid, const MatrixX3& P) {
+  double sum = 0.0;
+  for (int i = 0; i < P.rows(); ++i) {
+    const Vector3 q = (P.row(i).transpose() - grid.p_min) / grid.cell;
+    const std::array<int, 3> at{static_cast<int>(q.x()), static_cast<int>(q.y()),
+                                static_cast<int>(q.z())};
+    double height = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::array<int, 3> up{corner % 2, corner / 2 % 2, corner / 4};
+      double weight = 1.0;
+      for (int k = 0; k < 3; ++k) weight *= up[k] == 1 ? q[k] - at[k] : 1.0 - (q[k] - at[k]);
+      height += weight * grid.values[grid.Index(at[0] + up[0], at[1] + up[1], at[2] + up[2])];
+    }
+    sum += std::abs(height);
+  }
+  return sum / static_cast<double>(P.rows());
 }
 
 // The surface as the grid has it, or smoothed where that takes handles away and fits the points
 // about as well.
 TriangleMesh ExtractBest(const SampledCloud& cloud, ScalarGrid grid) {
+  ScalarGrid smooth = grid;
   const auto extract = [](ScalarGrid& field) {
     FillPockets(field);
     return LargestComponent(ExtractSurface(field));
   };
-  ScalarGrid smooth = grid;
   TriangleMesh sharp_mesh = extract(grid);
   if (sharp_mesh.F.rows() == 0 || CalcEulerNumber(sharp_mesh) == 2) return sharp_mesh;
   Smooth(smooth, 1.5 * grid.cell);
@@ -219,15 +194,47 @@ TriangleMesh ExtractBest(const SampledCloud& cloud, ScalarGrid grid) {
   if (smooth_mesh.F.rows() == 0 || CalcEulerNumber(smooth_mesh) <= CalcEulerNumber(sharp_mesh)) {
     return sharp_mesh;
   }
-  const double more =
-      Mean(MeasureErrors(cloud.P, smooth_mesh)) - Mean(MeasureErrors(cloud.P, sharp_mesh));
   constexpr double kAboutAsWell = 0.08;  // in spacings
+  const double more = MeanHeight(smooth, cloud.P) - MeanHeight(grid, cloud.P);
   return more < kAboutAsWell * cloud.spacing ? smooth_mesh : sharp_mesh;
+}
+
+// True when the points' own normals serve; else they get those of planes.
+bool TakeNormals(const MatrixX3& normals, const std::vector<int>& chosen, SampledCloud& cloud) {
+  if (normals.rows() > 0) cloud.N = TakeRows(normals, chosen);
+  const bool usable =
+      cloud.N.rows() > 0 && cloud.N.allFinite() && cloud.N.rowwise().squaredNorm().minCoeff() > 0.0;
+  if (usable) {
+    cloud.N.rowwise().normalize();
+  } else {
+    FitPlanes(cloud);
+  }
+  return usable;
+}
+
+void RequireThickness(const SampledCloud& cloud) {
+  const double thickness = CalcThickness(cloud.P);
+  if (thickness >= 0.5 * cloud.spacing) return;
+  throw UnclosedCloud(kClosed,
+                      fmt::format("which lie within {:.2f} mm of a plane", 1e3 * thickness));
+}
+
+void RequireSolid(const TriangleMesh& mesh, int euler_number, double spacing) {
+  if (mesh.F.rows() == 0 || CalcVolume(mesh) <= 0.0) {
+    throw UnclosedCloud(kClosed, "around which no closed surface was found");
+  }
+  const int handles = 1 - euler_number / 2;
+  if (handles > kMaxHandles) {
+    throw UnclosedCloud(
+        "points denser than the shape's walls are thick",
+        fmt::format("whose points are {:.1f} mm apart and give {} holes", 1e3 * spacing, handles));
+  }
 }
 
 }  // namespace
 
 Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normals) {
+  PREGRASP_CHECK(normals.rows() == 0 || normals.rows() == points.rows(), normals.rows());
   const std::vector<int> chosen = ChoosePoints(points);
   if (chosen.size() < kMinPoints) {
     throw UnclosedCloud(fmt::format("at least {} points", kMinPoints),
@@ -236,20 +243,8 @@ Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normal
   SampledCloud cloud;
   cloud.P = TakeRows(points, chosen);
   FindNeighbourhoods(cloud);
-  const std::string closed = "points all over a closed surface";
-  const double thickness = CalcThickness(cloud.P);
-  if (thickness < 0.5 * cloud.spacing) {
-    throw UnclosedCloud(closed,
-                        fmt::format("which lie within {:.2f} mm of a plane", 1e3 * thickness));
-  }
-  if (normals.rows() == points.rows()) cloud.N = TakeRows(normals, chosen);
-  const bool has_normals =
-      cloud.N.rows() > 0 && cloud.N.allFinite() && cloud.N.rowwise().squaredNorm().minCoeff() > 0.0;
-  if (has_normals) {
-    cloud.N.rowwise().normalize();
-  } else {
-    FitPlanes(cloud);
-  }
+  RequireThickness(cloud);
+  const bool has_normals = TakeNormals(normals, chosen, cloud);
   CloudFlood flood = OrientOutward(cloud, has_normals);
   const double distance = 0.75 * cloud.widest;
   flood.Spread(distance);
@@ -257,26 +252,22 @@ Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normal
   DropStrays(cloud);
 
   TriangleMesh mesh = ExtractBest(cloud, Evaluate(cloud, flood, distance));
-  if (mesh.F.rows() == 0 || CalcVolume(mesh) <= 0.0) {
-    throw UnclosedCloud(closed, "around which no closed surface was found");
-  }
   Reconstruction result;
   result.spacing = cloud.spacing;
-  result.euler_number = CalcEulerNumber(mesh);
-  const int handles = 1 - result.euler_number / 2;
-  if (handles > kMaxHandles) {
-    throw UnclosedCloud("points denser than the shape's walls are thick",
-                        fmt::format("whose points are {:.1f} mm apart and give {} holes",
-                                    1e3 * cloud.spacing, handles));
-  }
+  result.euler_number = mesh.F.rows() == 0 ? 0 : CalcEulerNumber(mesh);
+  RequireSolid(mesh, result.euler_number, cloud.spacing);
   hull.PullIn(mesh);
   result.mesh = SimplifyMesh(mesh, {}, kMaxTriangles);
-  const std::vector<double> errors = MeasureErrors(TakeRows(points, chosen), result.mesh);
-  result.mean_error = Mean(errors);
+
+  const MeshDistance to_mesh(result.mesh);
+  std::vector<double> errors;
+  for (const int i : chosen) errors.push_back(std::abs(to_mesh.Calc(points.row(i))));
+  result.mean_error =
+      std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   result.p99_error = Percentile(errors, 0.99);
   if (result.p99_error > 2.0 * cloud.widest) {
-    throw UnclosedCloud(closed, fmt::format("of which some lie {:.1f} mm off the surface found",
-                                            1e3 * result.p99_error));
+    throw UnclosedCloud(kClosed, fmt::format("of which some lie {:.1f} mm off the surface found",
+                                             1e3 * result.p99_error));
   }
   return result;
 }
