@@ -284,6 +284,24 @@ TEST(RendererTest, RandomScenesGivePictures) {
   }
 }
 
+TEST(RendererTest, AConeIsAsOpaqueAsAskedUpToThreeTenths) {
+  const auto draw = [](float opacity) {
+    RenderScene scene;
+    scene.camera = {Vector3(0.5, 0, 0.3), Vector3(0, 0, 0.06), 30.0};
+    if (opacity > 0.0F) {
+      scene.cones.push_back(
+          {Vector3::Zero(), Vector3(0, 0, 0.1), 0.6F, Rgba{0.0F, 0.0F, 0.0F, opacity}});
+    }
+    return SharedRenderer().Render(scene, kSmall);
+  };
+  const Vector2 middle(160, 90);
+  const int none = Brightness(draw(0.0F), middle), some = Brightness(draw(0.22F), middle),
+            most = Brightness(draw(0.3F), middle);
+  EXPECT_GT(none - some, 60);  // of 765: to be seen on a light ground
+  EXPECT_GT(some - most, 10);
+  EXPECT_EQ(draw(0.3F).rgb, draw(1.0F).rgb);
+}
+
 TEST(RendererTest, WrongSizesCamerasAndNumbersAreInputErrors) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(SharedRenderer().Render({}, {15, 180, RenderQuality::kDraft}), InputError);
