@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/commands/commands.h"
+#include "app/commands/seed_option.h"
 #include "app/core/text.h"
 #include "app/core/thread_pool.h"
 #include "app/pipeline/start_verdict.h"
@@ -61,7 +62,7 @@ void AddCheck(CLI::App& app, Action& action) {
   command->add_option("SCENE", options->scene, "The scene, a Lua file")->required();
   command->add_option("--set", options->settings, "Change a value: object.mass=0.2")
       ->allow_extra_args(false);
-  command->add_option("--seed", options->seed, "Of the search for grasps")->capture_default_str();
+  AddSeedOption(*command, options->seed, "Of the search for grasps");
   command->add_flag("--no-grasps", options->no_grasps,
                     "Do not ask whether the object can be grasped where it stands");
   command->callback([options, &action] { action = [options] { return Check(*options); }; });

@@ -11,6 +11,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
+#include "app/commands/seed_option.h"
 #include "app/core/interrupt.h"
 #include "app/pipeline/planner_settings.h"
 #include "app/pipeline/start_verdict.h"
@@ -99,7 +100,7 @@ void AddRun(CLI::App& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Plan: from a scene to a grasp and a hand motion");
   command->add_option("SCENE", options->scene, "The scene, a Lua file")->required();
-  command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
+  AddSeedOption(*command, options->seed, "Seed of everything random");
   command->add_option("--out", options->out,
                       "The run directory; out/NAME by default. A finished run there is replaced");
   command->add_option("--paths", options->run.paths, "Paths to optimise at most")

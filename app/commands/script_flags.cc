@@ -1,10 +1,11 @@
 #include "app/commands/script_flags.h"
 
+#include "app/commands/seed_option.h"
+
 namespace pregrasp {
 
 void ScriptFlags::AddTo(CLI::App& command) {
-  command.add_option("--seed", config.machine.seed, "Seed of everything random")
-      ->capture_default_str();
+  AddSeedOption(command, config.machine.seed, "Seed of everything random");
   command
       .add_option("--time", config.machine.seconds, "Seconds of Lua; our own calls are not counted")
       ->capture_default_str();

@@ -1,0 +1,113 @@
+// pregrasp run as a user types it, with networks whose weights are random: what it finds is poor,
+// what it answers is not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "app/recording/manifest.h"
+#include "app/recording/run_directory.h"
+#include "tests/bindings/run_program.h"
+#include "tests/networks/random_network.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunCommandTest : public testing::Test {
+ protected:
+  RunCommandTest() {
+    std::string name = (fs::temp_directory_path() / "pregrasp_command_XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    fs::create_directories(Weights());
+    setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);  // for the program's verdicts
+    WriteTensors(Weights() / "score.safetensors", MakeRandomScore(3));
+    WriteTensors(Weights() / "generator.safetensors", MakeRandomGenerator(4));
+  }
+  ~RunCommandTest() override { fs::remove_all(folder_); }
+
+  fs::path Weights() const { return folder_ / "weights"; }
+
+  std::vector<std::string> Arguments(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {
+        "run", "scenes/ruler.lua", "--weights", Weights().string(), "--pictures", "none"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  // A run of a second or two.
+  std::vector<std::string> Quick(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments =
+        Arguments({"--paths", "1", "--set", "mppi.iterations=2", "--set", "grasps.samples=2",
+                   "--set", "grasps.max_refinements=1", "--set", "grasps.starts=2"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(RunCommandTest, WithoutSuccessTheRunIsCompleteAndSaysWhy) {
+  const ProgramResult result = RunProgram(Quick({}), folder_);
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_NE(result.out.find("path 1, cost "), std::string::npos) << result.out;
+  EXPECT_FALSE(VerifyManifest(folder_ / "out" / "ruler").has_value());
+  const LoadedRun run = LoadRun(folder_ / "out" / "ruler");
+  EXPECT_EQ(run.summary["status"], "no_feasible_grasp");
+  EXPECT_EQ(run.manifest["configuration"]["mppi"]["iterations"], 2);
+}
+
+TEST_F(RunCommandTest, ASeedGivesTheSameBytesWithAnyNumberOfThreadsAndAFinishedRunIsReplaced) {
+  const fs::path out = folder_ / "out" / "ruler";
+  RunProgram(Quick({"--threads", "1"}), folder_);
+  const std::string steps = ReadText(out / "steps.jsonl");
+  const std::string hash = LoadRun(out).summary["hash"];
+  RunProgram(Quick({"--threads", "2"}), folder_);
+  EXPECT_EQ(ReadText(out / "steps.jsonl"), steps);
+  EXPECT_EQ(LoadRun(out).summary["hash"], hash);
+  RunProgram(Quick({"--seed", "2"}), folder_);
+  EXPECT_NE(ReadText(out / "steps.jsonl"), steps);
+}
+
+TEST_F(RunCommandTest, BadInputIsOneLineAndLeavesNothing) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {Arguments({"--seed", "-3"}), "--seed"},
+      {Arguments({"--paths", "0"}), "paths"},
+      {Arguments({"--set", "mppi.sampels=3"}), "mppi.samples"},
+      {Arguments({"--set", "mppi.samples=2"}), "samples"},
+      {Arguments({"--set", "object.mass=-1"}), "object.mass"},
+      {Arguments({"--pictures", "some"}), "--pictures"},
+      {{"run", "nothing.lua"}, "nothing.lua"},
+      {{"run", "scenes/ruler.lua", "--weights", "nowhere"}, "score.safetensors"},
+  };
+  for (const auto& [arguments, expected] : cases) {
+    const std::vector<std::string> before = ListFiles(folder_);
+    const ProgramResult result = RunProgram(arguments, folder_);
+    EXPECT_EQ(result.code, 2) << expected;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_NE(result.err.find(expected), std::string::npos) << result.err;
+    EXPECT_EQ(ListFiles(folder_), before) << expected;
+  }
+}
+
+TEST_F(RunCommandTest, CtrlCLeavesAValidShorterRun) {
+  const fs::path captured = folder_ / "captured";
+  const pid_t child = StartProgram(Arguments({"--out", "run"}), folder_, captured);
+  const auto is_planning = [&] {
+    return ReadText(captured / "err").find("path 1 of 10, trajectory") != std::string::npos;
+  };
+  for (int i = 0; i < 3000 && !is_planning(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  kill(child, SIGINT);
+  EXPECT_EQ(AwaitProgram(child, captured).code, 130);
+  EXPECT_EQ(LoadRun(folder_ / "run").summary["status"], "interrupted");
+  EXPECT_FALSE(VerifyManifest(folder_ / "run").has_value());
+}
+
+}  // namespace
+}  // namespace pregrasp
