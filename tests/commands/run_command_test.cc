@@ -18,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::string kScene = PREGRASP_SOURCE_DIR "/scenes/ruler.lua";
+
 class RunCommandTest : public testing::Test {
  protected:
   RunCommandTest() {
@@ -33,8 +35,8 @@ class RunCommandTest : public testing::Test {
   fs::path Weights() const { return folder_ / "weights"; }
 
   std::vector<std::string> Arguments(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {
-        "run", "scenes/ruler.lua", "--weights", Weights().string(), "--pictures", "none"};
+    std::vector<std::string> arguments = {"run",        kScene, "--weights", Weights().string(),
+                                          "--pictures", "none"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -82,7 +84,7 @@ TEST_F(RunCommandTest, BadInputIsOneLineAndLeavesNothing) {
       {Arguments({"--set", "object.mass=-1"}), "object.mass"},
       {Arguments({"--pictures", "some"}), "--pictures"},
       {{"run", "nothing.lua"}, "nothing.lua"},
-      {{"run", "scenes/ruler.lua", "--weights", "nowhere"}, "score.safetensors"},
+      {{"run", kScene, "--weights", "nowhere"}, "score.safetensors"},
   };
   for (const auto& [arguments, expected] : cases) {
     const std::vector<std::string> before = ListFiles(folder_);
