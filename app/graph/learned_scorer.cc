@@ -1,6 +1,11 @@
 #include "app/graph/learned_scorer.h"
 
+#include <algorithm>
+#include <functional>
+#include <numeric>
 #include <optional>
+
+#include "app/core/check.h"
 
 namespace pregrasp {
 
@@ -61,10 +66,7 @@ class LearnedScorer::FixedState : public PlacementScorer {
   }
 
   bool IsOccluded(Finger finger, const Placement::Contact& contact) const override {
-    if (!X_WB_) return false;
-    const double radius = FingertipRadius(finger);
-    const Vector3 p_WTip = X_WB_->front() * Vector3(contact.p_OC + radius * contact.nhat_O);
-    return owner_.environment_.Calc(p_WTip, *X_WB_).phi < radius;
+    return X_WB_ && owner_.IsOccluded(finger, contact, *X_WB_);
   }
 
  private:
@@ -94,6 +96,42 @@ std::vector<double> LearnedScorer::Score(std::span<const ScoredState> states) co
   });
   const VectorX scores = score_.ScoreStates(structure_, seen, contacts, pool_);
   return {scores.data(), scores.data() + scores.size()};
+}
+
+bool LearnedScorer::IsOccluded(Finger finger, const Placement::Contact& contact,
+                               const std::vector<RigidTransform>& X_WB) const {
+  const double radius = FingertipRadius(finger);
+  const Vector3 p_WTip = X_WB.front() * Vector3(contact.p_OC + radius * contact.nhat_O);
+  return environment_.Calc(p_WTip, X_WB).phi < radius;
+}
+
+std::vector<double> LearnedScorer::ScoreGraspable(std::span<const ScoredState> states) const {
+  PREGRASP_CHECK(!probes_.empty());
+  std::vector<double> scores(states.size());
+  pool_.ParallelFor(static_cast<int>(states.size()),
+                    [&](int i, int) { scores[i] = ScoreBestProbes(states[i]); });
+  return scores;
+}
+
+double LearnedScorer::ScoreBestProbes(const ScoredState& state) const {
+  std::vector<PlanningContacts> contacts;
+  for (Placement probe : probes_) {
+    bool free = true;
+    for (int f = 0; f < kNumPlanningFingers; ++f) {
+      const Placement::Contact& own = state.placement.fingers[f];
+      if (own.on) probe.fingers[f] = own;
+      free = free && (own.on || !probe.fingers[f].on ||
+                      !IsOccluded(static_cast<Finger>(f), probe.fingers[f], state.X_WB));
+    }
+    if (free) contacts.push_back(MakePlanningContacts(probe, &state.X_WB, environment_));
+  }
+  if (contacts.empty()) return 0.0;
+  const VectorX all = score_.ScoreContacts(
+      structure_, MakeObjectState(cloud_, state.X_WB, environment_, gravity_W_), contacts);
+  std::vector<double> best(all.data(), all.data() + all.size());
+  const auto count = std::min<std::ptrdiff_t>(kBestProbes, std::ssize(best));
+  std::partial_sort(best.begin(), best.begin() + count, best.end(), std::greater<>());
+  return std::accumulate(best.begin(), best.begin() + count, 0.0) / kBestProbes;
 }
 
 std::unique_ptr<PlacementScorer> LearnedScorer::At(const std::vector<RigidTransform>& X_WB) const {

@@ -31,6 +31,14 @@ class LearnedScorer : public StateScorer {
 
   std::vector<double> Score(std::span<const ScoredState> states) const override;
 
+  /// The mean of the kBestProbes best scores among the probes, each with the state's own contacts
+  /// in place of its fingers'; where a fingertip cannot be, a probe scores 0.
+  std::vector<double> ScoreGraspable(std::span<const ScoredState> states) const override;
+  static constexpr int kBestProbes = 8;  ///< of one the noise of the network would be sought out
+
+  /// The placements that ScoreGraspable tries: those that are good without surroundings.
+  void SetProbes(std::vector<Placement> probes) { probes_ = std::move(probes); }
+
   const PointCloud& cloud() const { return cloud_; }
 
   /// The paper's s_c: placements with every body where it is at the start.
@@ -42,6 +50,9 @@ class LearnedScorer : public StateScorer {
 
  private:
   class FixedState;
+  bool IsOccluded(Finger finger, const Placement::Contact& contact,
+                  const std::vector<RigidTransform>& X_WB) const;
+  double ScoreBestProbes(const ScoredState& state) const;
 
   const ScoreFunction& score_;
   const EnvironmentDistance& environment_;
@@ -49,6 +60,7 @@ class LearnedScorer : public StateScorer {
   PointCloud cloud_;
   Vector3 gravity_W_;
   std::vector<RigidTransform> X_WB_start_;
+  std::vector<Placement> probes_;
   CloudStructure structure_;
 };
 

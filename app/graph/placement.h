@@ -50,6 +50,12 @@ class StateScorer {
 
   /// One score in [0, 1] for each state.
   virtual std::vector<double> Score(std::span<const ScoredState> states) const = 0;
+
+  /// How graspable the object is in each state, in [0, 1]: by the best of all placements that keep
+  /// the state's own contacts, which may be none. Without a better idea, the score of these.
+  virtual std::vector<double> ScoreGraspable(std::span<const ScoredState> states) const {
+    return Score(states);
+  }
 };
 
 /// The point with barycentric coordinates `w` (sum 1) of triangle `t`, projected to the true shape,

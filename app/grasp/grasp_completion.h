@@ -11,8 +11,8 @@ struct CompletionConfig {
   GraspConfig grasp;
   /// How far a contact may be moved from where its generated point meets the surface [m].
   double max_refinement = 0.010;
-  int max_refinements = 60;  ///< moved sets drawn for a sample that is not feasible as it is
-  int max_solves = 8;        ///< of those, put to inverse kinematics: those whose forces hold
+  int max_refinements = 300;  ///< moved sets drawn for a sample that is not feasible as it is
+  int max_solves = 16;        ///< of those, put to inverse kinematics: those whose forces hold
 
   void Validate() const;
 };

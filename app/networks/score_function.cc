@@ -63,6 +63,16 @@ VectorX ScoreFunction::ScoreContacts(const CloudStructure& structure, const Obje
   return scores;
 }
 
+VectorX ScoreFunction::ScoreContacts(const CloudStructure& structure, const ObjectState& state,
+                                     const std::vector<PlanningContacts>& contacts) const {
+  EncodedState encoded;
+  encoder_.EncodeChunk(structure, &state, 1, &encoded);
+  VectorX scores(static_cast<Eigen::Index>(contacts.size()));
+  ScoreRange(structure, encoded, head_.CalcCodeShare(encoded.code), contacts.data(),
+             static_cast<int>(contacts.size()), scores.data());
+  return scores;
+}
+
 VectorX ScoreFunction::ScoreStates(const CloudStructure& structure,
                                    const std::vector<ObjectState>& states,
                                    const std::vector<PlanningContacts>& contacts,

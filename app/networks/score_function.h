@@ -30,6 +30,10 @@ class ScoreFunction {
   VectorX ScoreContacts(const CloudStructure& structure, const ObjectState& state,
                         const std::vector<PlanningContacts>& contacts, ThreadPool& pool) const;
 
+  /// The same on the calling thread alone.
+  VectorX ScoreContacts(const CloudStructure& structure, const ObjectState& state,
+                        const std::vector<PlanningContacts>& contacts) const;
+
   /// Scores of many states with one choice of contacts each, as rollouts ask for them (#states).
   VectorX ScoreStates(const CloudStructure& structure, const std::vector<ObjectState>& states,
                       const std::vector<PlanningContacts>& contacts, ThreadPool& pool) const;

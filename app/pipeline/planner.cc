@@ -8,10 +8,6 @@
 namespace pregrasp {
 namespace {
 
-constexpr double kReleaseSeconds = 1.0;
-constexpr double kReleaseShift = 0.01;  // [m]
-constexpr double kReleaseTurnDeg = 5.0;
-
 StepConfig HalfStep(StepConfig config) {
   config.dt *= 0.5;
   return config;
@@ -26,6 +22,17 @@ std::vector<GraspContact> PressingContacts(const WorldState& state) {
     }
   }
   return pressing;
+}
+
+// What ScoreGraspable tries: placements that are good without surroundings, spread over the object.
+std::vector<Placement> FindProbes(const Shape& object, const ContactMeshConfig& mesh_config,
+                                  const SignedDistance& shape, const LearnedScorer& scorer,
+                                  std::uint64_t seed) {
+  constexpr int kProbes = 256;
+  PlacementSearchConfig config;
+  config.spacing = 0.02;
+  return FindPlacements(BuildContactMesh(object, mesh_config), shape, *scorer.Free(), {}, kProbes,
+                        config, Rng(seed, RngStream::kGraph, 1));
 }
 
 }  // namespace
@@ -70,8 +77,10 @@ Planner::Planner(std::shared_ptr<const World> world, WorldState start, const Pla
                                       Rng(seed, RngStream::kPointCloud));
   generator_structure_ = std::make_shared<const CloudStructure>(
       generator_->BuildStructure(cloud.P, scene().object().X_WB.linear()));
-  scorer_ = std::make_shared<const LearnedScorer>(*score_, scene(), std::move(cloud), *environment_,
-                                                  pool_);
+  const auto scorer = std::make_shared<LearnedScorer>(*score_, scene(), std::move(cloud),
+                                                      *environment_, pool_);
+  scorer->SetProbes(FindProbes(scene().object().shape, config.mesh, *shape_, *scorer, seed));
+  scorer_ = scorer;
   grasp_world_ = std::make_shared<const GraspWorld>(scene(), ShadowHand());
 }
 
@@ -123,23 +132,19 @@ Certificate Planner::Certify(const Mppi& mppi, const MppiState& state) const {
 
 ReleaseResult Planner::Release(const ContactGraph& graph, const Certificate& certificate) const {
   ReleaseResult result;
-  WorldState state = certificate.full.end;
-  result.pressing = PressingContacts(state);
-  for (int f = 0; f < kNumFingers; ++f) world_->LiftFinger(state, static_cast<Finger>(f));
-  const RigidTransform X_WO = state.bodies.front().X_WB();
-  const int steps = static_cast<int>(std::lround(kReleaseSeconds / world_->config().dt));
-  for (int i = 0; i < steps; ++i) world_->Step(state);
-  const RigidTransform X_WO_end = state.bodies.front().X_WB();
-  result.shift = (X_WO_end.translation() - X_WO.translation()).norm();
-  result.turn_deg = RadToDeg(RotationAngle(X_WO.linear(), X_WO_end.linear()));
-  result.stays = result.shift < kReleaseShift && result.turn_deg < kReleaseTurnDeg;
+  const WorldState& end = certificate.full.end;
+  const pregrasp::Release release = SimulateRelease(*world_, end);
+  result.pressing = PressingContacts(end);
+  result.shift = release.shift;
+  result.turn_deg = release.turn_deg;
+  result.stays = release.stays;
 
   Placement fixed;
   for (const GraspContact& contact : result.pressing) {
     if (result.stays) break;
     fixed.fingers[static_cast<int>(contact.finger)] = {true, contact.p_OC, contact.nhat_O};
   }
-  const auto scorer = scorer_->At(world_->GetPoses(certificate.full.end));
+  const auto scorer = scorer_->At(world_->GetPoses(end));
   result.conditions = FindPlacements(graph.mesh(), *shape_, *scorer, fixed, config_.grasp_samples,
                                      config_.placements, Rng(seed_, RngStream::kGrasp));
   return result;

@@ -31,17 +31,22 @@ std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& ou
   for (const WorldState& state : outcome.stage_starts) {
     states.push_back(MakeScoredState(world, state));
   }
-  states.push_back(MakeScoredState(world, outcome.end));
   return states;
 }
 
+ScoredState EndToScore(const World& world, const PlanOutcome& outcome) {
+  ScoredState end = MakeScoredState(world, outcome.end);
+  if (!outcome.diverged && SimulateRelease(world, outcome.end).stays) end.placement = {};
+  return end;
+}
+
 PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
-                      std::span<const double> scores, const CostWeights& weights,
-                      double force_scale) {
-  PREGRASP_CHECK(scores.size() == outcome.stage_starts.size() + 1, scores.size());
+                      std::span<const double> stage_scores, double final_score,
+                      const CostWeights& weights, double force_scale) {
+  PREGRASP_CHECK(stage_scores.size() == outcome.stage_starts.size(), stage_scores.size());
   PlanCost cost;
-  cost.stage_scores.assign(scores.begin(), scores.end() - 1);
-  cost.final_score = scores.back();
+  cost.stage_scores.assign(stage_scores.begin(), stage_scores.end());
+  cost.final_score = final_score;
   const bool touched = outcome.contact_seconds > 0.0;
   cost.no_contact = touched ? 0.0 : weights.no_contact;
   if (touched) {
@@ -52,9 +57,9 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
   cost.unrest =
       weights.unrest * std::min(2.0, end.v_WB.norm() / kRestSpeed + end.w_WB.norm() / kRestTurn);
   cost.speed = weights.speed * std::clamp(outcome.max_speed - kFastSpeed, 0.0, 2.0);
-  if (outcome.seconds > 0.0) {
-    cost.tip_overlap =
-        weights.tip_overlap * std::min(1.0, outcome.tip_overlap_seconds / outcome.seconds);
+  if (outcome.tip_overlap_seconds > 0.0) {
+    const double share = std::min(1.0, outcome.tip_overlap_seconds / outcome.seconds);
+    cost.tip_overlap = weights.tip_overlap * 0.5 * (1.0 + share);
   }
   cost.tip_spacing = outcome.min_tip_distance < kMinTipDistance ? weights.tip_spacing : 0.0;
   const BodyState& start = outcome.stage_starts.front().bodies.front();
@@ -65,7 +70,8 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
     cost.unrest = 2.0 * weights.unrest;
     cost.speed = 2.0 * weights.speed;
   }
-  for (const double score : scores) cost.total -= score;
+  cost.total = -final_score;
+  for (const double score : stage_scores) cost.total -= score;
   cost.total += cost.no_contact + cost.slip + cost.effort + cost.unrest + cost.speed +
                 cost.tip_overlap + cost.tip_spacing + cost.fall;
   return cost;

@@ -15,7 +15,8 @@ struct CostWeights {
   double effort = 0.1;       ///< mean force over the largest one allowed
   double unrest = 0.3;       ///< speed when the hold ends, v / (0.1 m/s) + w / (1 rad/s), at most 2
   double speed = 0.8;        ///< peak speed above 0.35 m/s, in m/s, at most 2
-  double tip_overlap = 1.0;  ///< share of the time with a fingertip in the surroundings
+  double tip_overlap = 1.0;  ///< a fingertip in the surroundings: such a plan is never certified;
+                             ///< half of it at once, the rest by the share of the time
   double tip_spacing = 0.5;  ///< both tips on and nearer than 15 mm
   double fall = 1.5;         ///< the object fell out of the scene, or the simulation diverged
 };
@@ -23,18 +24,23 @@ struct CostWeights {
 /// A plan's cost by its terms [dimensionless]; `total` = -(sum of scores) + penalties.
 struct PlanCost {
   std::vector<double> stage_scores;  ///< at the start of each stage (paper, the objective)
-  double final_score = 0.0;          ///< after the hold
+  double final_score = 0.0;          ///< how graspable the object is after the hold
   double no_contact = 0.0, slip = 0.0, effort = 0.0, unrest = 0.0, speed = 0.0;
   double tip_overlap = 0.0, tip_spacing = 0.0, fall = 0.0;
   double total = 0.0;
 };
 
-/// The states whose scores the cost of `outcome` needs: each stage's start, then the end.
+/// The states whose scores the cost of `outcome` needs: each stage's start.
 std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& outcome);
 
-/// The cost of a plan from its outcome and the scores of StatesToScore, in order.
+/// The end of `outcome`, for ScoreGraspable: with the contacts that must stay, because the object
+/// would not without them.
+ScoredState EndToScore(const World& world, const PlanOutcome& outcome);
+
+/// The cost of a plan from its outcome, the scores of StatesToScore, in order, and how graspable
+/// the object is at the end.
 PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
-                      std::span<const double> scores, const CostWeights& weights,
-                      double force_scale);
+                      std::span<const double> stage_scores, double final_score,
+                      const CostWeights& weights, double force_scale);
 
 }  // namespace pregrasp

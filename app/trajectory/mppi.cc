@@ -79,7 +79,11 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
   const std::vector<std::vector<double>> actions = SampleActions(state);
   const int count = static_cast<int>(actions.size());
   std::vector<PlanOutcome> outcomes(count);
-  pool.ParallelFor(count, [&](int i, int) { outcomes[i] = Simulate(actions[i]); });
+  std::vector<ScoredState> ends(count);
+  pool.ParallelFor(count, [&](int i, int) {
+    outcomes[i] = Simulate(actions[i]);
+    ends[i] = EndToScore(*problem_.world, outcomes[i]);
+  });
 
   std::vector<ScoredState> states;
   std::vector<std::size_t> first;  // index of each outcome's first state
@@ -92,6 +96,7 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
   first.push_back(states.size());
   const std::vector<double> scores = problem_.scorer->Score(states);
   PREGRASP_CHECK(scores.size() == states.size(), scores.size(), states.size());
+  const std::vector<double> final_scores = problem_.scorer->ScoreGraspable(ends);
 
   const double force_scale = range_.max_depth * problem_.world->scene().fingertips.stiffness;
   state.samples.assign(count, {});
@@ -101,7 +106,7 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
     sample.action = actions[i];
     sample.cost = CalcPlanCost(*problem_.world, outcomes[i],
                                std::span(scores).subspan(first[i], first[i + 1] - first[i]),
-                               config_.weights, force_scale);
+                               final_scores[i], config_.weights, force_scale);
     sample.X_WO_end = outcomes[i].end.bodies.front().X_WB();
     mean_cost += sample.cost.total / count;
     if (sample.cost.total < state.best_cost) {

@@ -98,7 +98,9 @@ TEST(MppiTest, APlanWithoutContactIsTheWorstKindOfRest) {
   EXPECT_EQ(outcome.contact_seconds, 0.0);
   const auto states = StatesToScore(ruler.world, outcome);
   const auto scores = ruler.scorer.Score(states);
-  const PlanCost cost = CalcPlanCost(ruler.world, outcome, scores, CostWeights(), 0.7);
+  const std::vector<ScoredState> end = {EndToScore(ruler.world, outcome)};
+  const PlanCost cost = CalcPlanCost(ruler.world, outcome, scores,
+                                     ruler.scorer.ScoreGraspable(end)[0], CostWeights(), 0.7);
   EXPECT_EQ(cost.no_contact, CostWeights().no_contact);
   EXPECT_NEAR(cost.total, CostWeights().no_contact, 1e-3);
 }

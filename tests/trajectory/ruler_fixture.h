@@ -64,15 +64,22 @@ inline TriangleMesh MakeStripMesh(const Vector3& size, int n) {
 }
 
 /// A stand-in for the learned score: how far the ruler's far end stands over the edge, 1 at 8 cm;
-/// nothing without a contact.
+/// of a state, nothing without a contact.
 class OverhangScorer : public StateScorer {
  public:
   std::vector<double> Score(std::span<const ScoredState> states) const override {
+    std::vector<double> scores = ScoreGraspable(states);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const Placement& placement = states[i].placement;
+      if (!placement.thumb().on && !placement.index().on) scores[i] = 0.0;
+    }
+    return scores;
+  }
+  std::vector<double> ScoreGraspable(std::span<const ScoredState> states) const override {
     std::vector<double> scores;
     for (const ScoredState& state : states) {
       const Vector3 p_WEnd = state.X_WB[0] * Vector3(0.15, 0.0, 0.0);
-      const bool contact = state.placement.thumb().on || state.placement.index().on;
-      scores.push_back(contact ? std::clamp((p_WEnd.x() + 0.01) / 0.09, 0.0, 1.0) : 0.0);
+      scores.push_back(std::clamp((p_WEnd.x() + 0.01) / 0.09, 0.0, 1.0));
     }
     return scores;
   }
