@@ -12,6 +12,7 @@
 
 #include "app/commands/dataset.h"
 #include "app/commands/progress.h"
+#include "app/commands/seed_option.h"
 #include "app/core/error.h"
 #include "app/geometry/point_cloud.h"
 #include "app/training/dataset_run.h"
@@ -136,7 +137,7 @@ void AddMerge(CLI::App& dataset, Action& action) {
 
 void ItemOptions::AddTo(CLI::App& command) {
   command.add_option("--scenes", config.scenes, "Scenes of each object")->capture_default_str();
-  command.add_option("--seed", config.seed, "Seed of everything random")->capture_default_str();
+  AddSeedOption(command, config.seed, "Seed of everything random");
   command.add_option("--exclude", excluded,
                      "Scenes whose objects no training object may resemble; without this option, "
                      "all evaluation scenes");

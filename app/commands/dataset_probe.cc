@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/commands/dataset.h"
+#include "app/commands/seed_option.h"
 #include "app/core/error.h"
 #include "app/graph/learned_scorer.h"
 #include "app/training/labels.h"
@@ -201,7 +202,7 @@ void AddDatasetProbe(CLI::App& dataset, Action& action) {
                    "Make labels too, with so many completions at each relief; takes minutes")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
+  AddSeedOption(*command, options->seed, "Seed of everything random");
   command->callback([options, &action] { action = [options] { return Probe(*options); }; });
 }
 

@@ -77,8 +77,8 @@ Planner::Planner(std::shared_ptr<const World> world, WorldState start, const Pla
                                       Rng(seed, RngStream::kPointCloud));
   generator_structure_ = std::make_shared<const CloudStructure>(
       generator_->BuildStructure(cloud.P, scene().object().X_WB.linear()));
-  const auto scorer = std::make_shared<LearnedScorer>(*score_, scene(), std::move(cloud),
-                                                      *environment_, pool_);
+  const auto scorer =
+      std::make_shared<LearnedScorer>(*score_, scene(), std::move(cloud), *environment_, pool_);
   scorer->SetProbes(FindProbes(scene().object().shape, config.mesh, *shape_, *scorer, seed));
   scorer_ = scorer;
   grasp_world_ = std::make_shared<const GraspWorld>(scene(), ShadowHand());
