@@ -11,14 +11,16 @@
 namespace pregrasp {
 
 /// Model-predictive path integral optimisation of one path (Williams et al., ICRA 2017), as a
-/// one-shot optimiser. Defaults are those that solved all scenes of the feasibility study.
+/// one-shot optimiser.
 struct MppiConfig {
-  int samples = 48;          ///< rollouts an iteration, 4 to 4096
-  int iterations = 15;       ///< at most, 1 to 1000
-  double sigma = 0.8;        ///< standard deviation of the noise in the first iteration
+  int samples = 48;     ///< rollouts an iteration, 4 to 4096
+  int iterations = 15;  ///< at most, 1 to 1000
+  double sigma = 1.2;   ///< standard deviation of the noise in the first iteration, so wide that
+                        ///< squashing by tanh reaches the ends of each range
   double final_sigma = 0.3;  ///< and in the last; geometric in between
   double temperature = 0.3;  ///< lambda over the standard deviation of the costs
-  int patience = 4;          ///< iterations without progress after which it has converged
+  int patience = 7;          ///< iterations without progress after which it has converged; with 4,
+                             ///< half of the paths ended before they had found anything
   double progress = 0.01;    ///< what counts as progress: the best cost falls by this much
   double max_travel = 0.03;  ///< range of a target's own movement in a knot, each axis [m]
   PlanTiming timing;
