@@ -246,6 +246,39 @@ TEST(StaticsTest, ACylinderInAVShapedGroovePressesEachWallWithItsShare) {
   EXPECT_LT((state.bodies[0].p_WB - Vector3(0, 0, z)).norm(), 1e-5);
 }
 
+TEST(StaticsTest, AWedgeBetweenWallsPressesEachWithItsWeightOverTwiceTheSine) {
+  // A prism on its edge between frictionless walls 15 degrees from upright.
+  const double angle = DegToRad(15.0), height = 0.1, half_width = height * std::tan(angle);
+  const double mass = 0.2, thickness = 0.02;
+  MatrixX3 P(6, 3);
+  for (int i = 0; i < 2; ++i) {
+    const double y = i == 0 ? -0.05 : 0.05;
+    P.row(3 * i) << 0.0, y, 0.0;
+    P.row(3 * i + 1) << -half_width, y, height;
+    P.row(3 * i + 2) << half_width, y, height;
+  }
+  std::vector<Body> walls;
+  for (const double side : {-1.0, 1.0}) {
+    const Vector3 nhat(side * std::cos(angle), 0.0, -std::sin(angle));
+    const Vector3 p = Vector3(side * 0.5 * half_width, 0.0, 0.5 * height) + 0.5 * thickness * nhat;
+    walls.push_back(MakeFixed(side < 0 ? "left" : "right", Box{Vector3(0.3, 0.4, thickness)},
+                              At(p.x(), p.y(), p.z(), Vector3(0, side * -75.0, 0)), 0.0));
+  }
+  const World world(MakeScene(MakeMovable("wedge", testing::MakeMesh(CalcConvexHull(P)),
+                                          RigidTransform::Identity(), mass, 0.0),
+                              walls));
+  WorldState state = world.InitialState();
+  Simulate(world, 1.0, &state);
+  std::vector<ContactPoint> contacts;
+  world.Step(state, &contacts);
+  double on_wall[2] = {0.0, 0.0};
+  for (const ContactPoint& contact : contacts) on_wall[contact.body_b - 1] += contact.f_W.norm();
+  for (const double force : on_wall) {
+    EXPECT_NEAR(force, mass * kGravity / (2.0 * std::sin(angle)), 1e-2);
+  }
+  EXPECT_LT(state.bodies[0].p_WB.norm(), 1e-5);
+}
+
 TEST(StaticsTest, SheetsUnderABookStayApartAndInPlace) {
   const World world(MakeScene(
       MakeBox("book", Vector3(0.15, 0.1, 0.03), At(0, 0, 0.019), 0.5, 0.3),
