@@ -373,10 +373,10 @@ function Path:optimize(options) end
 ---@class OptimizeOptions
 ---@field samples? integer rollouts an iteration, 48
 ---@field iterations? integer at most, 15
----@field sigma? number standard deviation of the noise in the first iteration, 0.8
+---@field sigma? number standard deviation of the noise in the first iteration, 1.2
 ---@field final_sigma? number and in the last, 0.3
 ---@field temperature? number lambda over the standard deviation of the costs, 0.3
----@field patience? integer iterations without progress after which it has converged, 4
+---@field patience? integer iterations without progress after which it has converged, 7
 ---@field progress? number what counts as progress, 0.01
 ---@field max_travel? number of a target in a knot, each axis [m], 0.03
 ---@field stage_seconds? number of one contact stage, 0.8
@@ -387,7 +387,7 @@ function Path:optimize(options) end
 ---@field effort? number weight: mean force over the largest one allowed, 0.1
 ---@field unrest? number weight: speed when the hold ends, 0.3
 ---@field speed? number weight: peak speed above 0.35 m/s, 0.8
----@field tip_overlap? number weight: share of the time with a fingertip in the surroundings, 1
+---@field tip_overlap? number weight: a fingertip in the surroundings, half at once, half by the share of the time, 1
 ---@field tip_spacing? number weight: tips nearer than 15 mm, 0.5
 ---@field fall? number weight: the object fell out of the scene, 1.5
 
@@ -447,7 +447,7 @@ function Optimizer:shot(options) end
 ---@class CostTerms
 ---@field total number
 ---@field stage_scores number[] at the start of each stage
----@field final_score number after the hold
+---@field final_score number how graspable the object is after the hold
 ---@field no_contact number
 ---@field slip number
 ---@field effort number
@@ -498,8 +498,8 @@ function Trajectory:grasps(options) end
 ---@field f_min? number smallest normal force of every finger [N], 0.5
 ---@field may_drop? boolean ring and little may be left out, true
 ---@field max_refinement? number how far a contact may be moved [m], 0.01
----@field max_refinements? integer moved sets drawn for a sample, 60
----@field max_solves? integer of those, put to inverse kinematics, 8
+---@field max_refinements? integer moved sets drawn for a sample, 300
+---@field max_solves? integer of those, put to inverse kinematics, 16
 ---@field starts? integer restarts of inverse kinematics, 20
 
 ---A body at its end.

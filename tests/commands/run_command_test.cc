@@ -111,5 +111,45 @@ TEST_F(RunCommandTest, CtrlCLeavesAValidShorterRun) {
   EXPECT_FALSE(VerifyManifest(folder_ / "run").has_value());
 }
 
+// The main job with the weights that ship.
+TEST(MainJobTest, TheRulerIsGrasped) {
+  std::string name = (fs::temp_directory_path() / "pregrasp_ruler_XXXXXX").string();
+  const fs::path folder = mkdtemp(name.data());
+  setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
+  const ProgramResult result = RunProgram({"run", kScene, "--pictures", "none"}, folder);
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  const LoadedRun run = LoadRun(folder / "out" / "ruler");
+  EXPECT_EQ(run.summary["status"], "ok");
+  EXPECT_GE(run.summary["r_suc"].get<double>(), 0.5);
+  EXPECT_EQ(run.summary["start_grasps"]["feasible"], 0);
+  EXPECT_EQ(run.summary["motion"]["failed"], 0);
+  EXPECT_TRUE(fs::exists(folder / "out" / "ruler" / "motion.csv"));
+  fs::remove_all(folder);
+}
+
+TEST(MainJobLongTest, FourSeedsOfFiveSucceed) {
+  std::string name = (fs::temp_directory_path() / "pregrasp_ruler_XXXXXX").string();
+  const fs::path folder = mkdtemp(name.data());
+  setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
+  int succeeded = 0;
+  for (const char* seed : {"1", "2", "3", "4", "5"}) {
+    succeeded +=
+        RunProgram({"run", kScene, "--pictures", "none", "--seed", seed}, folder).code == 0;
+  }
+  EXPECT_GE(succeeded, 4);
+  fs::remove_all(folder);
+}
+
+TEST(DocsTest, TheStepByStepScriptRunsAsPrinted) {
+  std::string name = (fs::temp_directory_path() / "pregrasp_docs_XXXXXX").string();
+  const fs::path folder = mkdtemp(name.data());
+  const ProgramResult result = RunProgram(
+      {"script", PREGRASP_SOURCE_DIR "/docs/step_by_step.lua", "--pictures", "none"}, folder);
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find("0 failed"), std::string::npos) << result.out;
+  EXPECT_FALSE(VerifyManifest(folder / "out" / "step_by_step").has_value());
+  fs::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace pregrasp
