@@ -58,8 +58,8 @@ function pregrasp.sphere(size) end
 ---@return Shape
 function pregrasp.mesh(file) end
 
----A closed surface given by 100 points or more in a PLY file, with normals or without: cloud{"cup.ply"}. They become a mesh;
----walls must be thicker than the points are apart.
+---A closed surface given by 100 points or more in a PLY file, with normals or without: cloud{"cup.ply"}.
+---They become a mesh; walls must be thicker than the points are apart.
 ---@param file FileTable
 ---@return Shape
 function pregrasp.cloud(file) end
