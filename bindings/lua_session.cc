@@ -261,6 +261,7 @@ const ClassInfo& SessionClass() {
                                   Method<&SessionSettle>("settle", "options"),
                                   Method<&SessionSimulate>("simulate"),
                                   Method<&SessionRecord>("record", "options"),
+                                  Method<&SessionBreakWhen>("break_when", "predicate"),
                                   Method<&SessionShot>("shot", "options"),
                                   Method<&SessionSave>("save", "dir"),
                                   Method<&SessionBody>("body", "name"),

@@ -25,6 +25,24 @@ struct LuaClass<LuaSimulation> {
   static const ClassInfo& info() { return SimulationClass(); }
 };
 
+/// A function of the script, by its reference in the registry; LUA_NOREF for none.
+struct Predicate {
+  int reference = LUA_NOREF;
+};
+template <>
+struct LuaValue<Predicate> {
+  static Predicate Read(lua_State* L, int index, const std::string& path);
+};
+
+/// break_when(f): from now on f sees the events of each physics step of the session's simulations,
+/// after each of their actions; the first one that it says yes to is where the action ended.
+void SessionBreakWhen(lua_State* L, const std::shared_ptr<Session>& session,
+                      const Predicate& predicate);
+
+/// Ends the simulation's last action where the session's predicate asks for it. @param first  of
+/// the action's states. @returns whether it did.
+bool StopWhereAsked(lua_State* L, const LuaSimulation& sim, int first);
+
 /// What shot{..} takes.
 struct ShotOptions {
   JournalStep::Shot shot;
@@ -48,6 +66,7 @@ int FindBody(const Scene& scene, const std::string& name);
 void CountMemory(lua_State* L, int kibibytes);
 
 std::vector<const Schema*> SessionSchemas();
+std::vector<const Schema*> EventSchemas();
 std::vector<const Schema*> SimulationSchemas();
 std::vector<const Schema*> GeometrySchemas();
 

@@ -77,35 +77,38 @@ namespace {
 
 constexpr int kBytesPerStepKib = 3;
 
-// Methods. Each that advances tells Lua's collector what the past has grown by.
+// Methods. Each that advances tells Lua's collector what the past has grown by, and returns whether
+// break_when stopped it.
 
 template <typename Body>
-void Advance(lua_State* L, LuaSimulation& sim, Body&& body) {
+bool Advance(lua_State* L, LuaSimulation& sim, Body&& body) {
   const int before = sim.simulation->num_states();
   body();
   CountMemory(L, kBytesPerStepKib * (sim.simulation->num_states() - before));
+  return StopWhereAsked(L, sim, before);
 }
 
 void SimTouch(LuaSimulation& sim, const TouchOptions& options) {
   sim.session->Touch(sim.simulation, options.finger, options.p_OC);
 }
 
-void SimMove(lua_State* L, LuaSimulation& sim, const MoveOptions& options) {
+bool SimMove(lua_State* L, LuaSimulation& sim, const MoveOptions& options) {
   const Vector3& from = sim.simulation->state().fingers[static_cast<int>(options.finger)].p_WTarget;
   const Vector3 to = options.to ? *options.to : Vector3(from + *options.by);
-  Advance(L, sim, [&] { sim.session->Move(sim.simulation, options.finger, to, options.seconds); });
+  return Advance(L, sim,
+                 [&] { sim.session->Move(sim.simulation, options.finger, to, options.seconds); });
 }
 
 void SimLift(LuaSimulation& sim, const LiftOptions& options) {
   sim.session->Lift(sim.simulation, options.finger);
 }
 
-void SimWait(lua_State* L, LuaSimulation& sim, const WaitOptions& options) {
-  Advance(L, sim, [&] { sim.session->Wait(sim.simulation, options.seconds); });
+bool SimWait(lua_State* L, LuaSimulation& sim, const WaitOptions& options) {
+  return Advance(L, sim, [&] { sim.session->Wait(sim.simulation, options.seconds); });
 }
 
-void SimStep(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
-  Advance(L, sim, [&] { sim.session->Step(sim.simulation, steps.value_or(1)); });
+bool SimStep(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
+  return Advance(L, sim, [&] { sim.session->Step(sim.simulation, steps.value_or(1)); });
 }
 
 void SimBack(LuaSimulation& sim, const std::optional<int>& steps) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <new>
+#include <utility>
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
@@ -125,6 +126,16 @@ Machine::Pause::Pause(lua_State* L) : machine_(Machine::Of(L)) {
 
 Machine::Pause::~Pause() {
   if (--machine_.pauses_ == 0) machine_.paused_ += ThreadSeconds() - machine_.paused_since_;
+}
+
+Machine::Resume::Resume(lua_State* L)
+    : machine_(Machine::Of(L)), pauses_(std::exchange(machine_.pauses_, 0)) {
+  if (pauses_ > 0) machine_.paused_ += ThreadSeconds() - machine_.paused_since_;
+}
+
+Machine::Resume::~Resume() {
+  machine_.pauses_ = pauses_;
+  if (pauses_ > 0) machine_.paused_since_ = ThreadSeconds();
 }
 
 void Machine::Stop(lua_State* L, StopReason reason, const std::string& message) {

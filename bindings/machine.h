@@ -86,6 +86,19 @@ class Machine {
     Machine& machine_;
   };
 
+  /// While alive within a pause, time is the script's again: it is called back.
+  class Resume {
+   public:
+    explicit Resume(lua_State* L);
+    ~Resume();
+    Resume(const Resume&) = delete;
+    Resume& operator=(const Resume&) = delete;
+
+   private:
+    Machine& machine_;
+    int pauses_;
+  };
+
  private:
   static void* Allocate(void* self, void* block, std::size_t old_size, std::size_t new_size);
   static void OnHook(lua_State* L, lua_Debug* activation);

@@ -136,7 +136,7 @@ Api MakeApi() {
   for (const auto& schemas :
        {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas(), GraspSchemas(),
         StageOptionSchemas(), GraphSchemas(), TrajectorySchemas(), GraspStageSchemas(),
-        MotionSchemas()}) {
+        MotionSchemas(), EventSchemas()}) {
     api.schemas.insert(api.schemas.end(), schemas.begin(), schemas.end());
   }
   return api;
@@ -165,7 +165,7 @@ ScriptContext& ScriptContext::Of(lua_State* L) {
 }
 
 ScriptMachine::ScriptMachine(const ScriptConfig& config)
-    : context_{config, {}, {}}, machine_(config.machine) {
+    : context_{config, {}, {}, {}}, machine_(config.machine) {
   machine_.files().AllowProgramFiles(DataFolder());
   machine_.files().SetOutput(config.output);
   lua_State* L = machine_.state();

@@ -43,6 +43,12 @@ struct ScriptContext {
   /// Held until the end of the script, so that a recording is finished even if the script lets go
   /// of its session.
   std::vector<std::shared_ptr<Session>> recording;
+  /// What break_when set, by session.
+  struct BreakPoint {
+    std::weak_ptr<Session> session;
+    int reference = LUA_NOREF;  ///< of the function, in the registry
+  };
+  std::map<const Session*, BreakPoint> predicates;
   /// What the planner's stages of a session share, while one of them is held.
   std::map<const Session*, std::weak_ptr<Planning>> planning;
 

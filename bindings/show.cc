@@ -116,6 +116,19 @@ std::string InlineList(lua_State* L, int index, int count, int depth) {
   return text + (count > kMostInline ? fmt::format(", .. {} in all}}", count) : "}");
 }
 
+// `Transform{p = {..}, q = {..}}` where that is short.
+std::string InlineRecord(lua_State* L, int index, const std::string& kind, int depth) {
+  std::string text;
+  for (const std::string& name : FieldNames(L, index)) {
+    PushField(L, index, name);
+    if (!text.empty()) text += ", ";
+    text += name + " = " + Inline(L, lua_gettop(L), depth + 1);
+    lua_pop(L, 1);
+    if (depth > 0 || text.size() > kMostText) return kind + "{..}";
+  }
+  return kind + '{' + text + '}';
+}
+
 std::string Inline(lua_State* L, int index, int depth) {
   switch (lua_type(L, index)) {
     case LUA_TNUMBER:
@@ -124,7 +137,7 @@ std::string Inline(lua_State* L, int index, int depth) {
       return '"' + Clip(lua_tostring(L, index), kMostText) + '"';
     case LUA_TTABLE: {
       const std::string kind = NameOf(L, index);
-      if (!kind.empty()) return kind + "{..}";
+      if (!kind.empty()) return InlineRecord(L, index, kind, depth);
       const auto count = static_cast<int>(lua_rawlen(L, index));
       if (count > 0) return InlineList(L, index, count, depth);
       return FieldNames(L, index).empty() ? "{}" : "{..}";

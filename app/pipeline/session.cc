@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/core/check.h"
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "app/geometry/overlap.h"
@@ -114,24 +115,30 @@ std::shared_ptr<Simulation> Session::Simulate() {
   return std::make_shared<Simulation>(world_, start_, start_id_);
 }
 
+JournalStep Session::StepOfAction() const {
+  const WorldState& after = last_->state();
+  JournalStep step = MakeStep(last_->step_id(), "sim", after, last_->contacts());
+  const Motion motion = CalcObjectMotion(*world_, before_, after);
+  step.record.details = details_;
+  step.record.details["what"] = what_;
+  step.record.details["moved_mm"] = 1e3 * motion.moved;
+  step.record.details["rotated_deg"] = RadToDeg(motion.rotated);
+  step.lines = DescribeStep(*world_, before_, after, last_->contacts());
+  step.lines.insert(step.lines.begin(), what_);
+  return step;
+}
+
 void Session::Act(const std::shared_ptr<Simulation>& simulation, const std::string& what,
                   nlohmann::json details, const std::function<void()>& action) {
-  const WorldState before = simulation->state();
-  const std::string id = fmt::format("sim.{}", num_actions_ + 1);
-  simulation->BeginAction(id);
+  WorldState before = simulation->state();
+  simulation->BeginAction(fmt::format("sim.{}", num_actions_ + 1));
   const auto add_step = [&] {
     ++num_actions_;
     last_ = simulation;
-    const WorldState& after = simulation->state();
-    JournalStep step = MakeStep(id, "sim", after, simulation->contacts());
-    const Motion motion = CalcObjectMotion(*world_, before, after);
-    details["what"] = what;
-    details["moved_mm"] = 1e3 * motion.moved;
-    details["rotated_deg"] = RadToDeg(motion.rotated);
-    step.record.details = std::move(details);
-    step.lines = DescribeStep(*world_, before, after, simulation->contacts());
-    step.lines.insert(step.lines.begin(), what);
-    AddStep(std::move(step));
+    before_ = std::move(before);
+    what_ = what;
+    details_ = std::move(details);
+    AddStep(StepOfAction());
   };
   try {
     action();
@@ -141,6 +148,13 @@ void Session::Act(const std::shared_ptr<Simulation>& simulation, const std::stri
     throw;
   }
   add_step();
+}
+
+void Session::Shorten(const std::shared_ptr<Simulation>& simulation, int steps) {
+  PREGRASP_CHECK(simulation == last_ && simulation->step_id() == journal_.back().record.id);
+  simulation->Back(steps);
+  details_["stopped"] = true;
+  journal_.back() = StepOfAction();
 }
 
 void Session::Touch(const std::shared_ptr<Simulation>& simulation, Finger finger,

@@ -65,6 +65,10 @@ class Session {
   void Wait(const std::shared_ptr<Simulation>& simulation, double seconds);
   void Step(const std::shared_ptr<Simulation>& simulation, int steps);
 
+  /// Takes back the last `steps` physics steps of the last action, of `simulation`: it is the step
+  /// of the journal that it would have been, had it ended there.
+  void Shorten(const std::shared_ptr<Simulation>& simulation, int steps);
+
   const JournalStep& last_step() const { return journal_.back(); }
   /// A simulation as it is now, as a step.
   JournalStep StepOf(const Simulation& simulation) const;
@@ -103,6 +107,7 @@ class Session {
  private:
   void Act(const std::shared_ptr<Simulation>& simulation, const std::string& what,
            nlohmann::json details, const std::function<void()>& action);
+  JournalStep StepOfAction() const;
   std::unique_ptr<JournalWriter> OpenWriter(const std::filesystem::path& directory,
                                             PictureMode pictures);
   RunOutcome OutcomeOfSimulation() const;
@@ -119,6 +124,10 @@ class Session {
   std::shared_ptr<const Simulation> last_;  // that acted last
   std::optional<RunOutcome> outcome_;       // of a plan
   int num_actions_ = 0;
+  // Of the last action.
+  WorldState before_;
+  std::string what_;
+  nlohmann::json details_;
   std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
   std::unique_ptr<JournalWriter> recorder_;
 };

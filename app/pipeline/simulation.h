@@ -24,6 +24,8 @@ class Simulation {
   /// Every physics step from the start to now, the start included.
   int num_states() const { return static_cast<int>(past_.size()); }
   const WorldState& state_at(int index) const { return past_[index]->state; }
+  /// Of the step that led there.
+  const std::vector<ContactPoint>& contacts_at(int index) const { return past_[index]->contacts; }
 
   /// The deepest overlap of two bodies before any of the past steps [m].
   double CalcMaxPenetration() const;

@@ -162,6 +162,29 @@ function Session:record(options) end
 ---@field dir string "out/..", which is the folder of --out
 ---@field pictures? "none"|"key"|"all" "key"
 
+---From now on the function sees the events of every physics step of the session's simulations: it is asked after
+---each action, in the order of its steps, and where it first says yes, the action ended there. nil takes it back.
+---@param predicate? fun(event: Event): boolean?
+function Session:break_when(predicate) end
+
+---What happened in one physics step: a "step" each, a "contact" for each contact point, a "finger" for each finger
+---that is on. Fields of the other kinds are nil.
+---@class Event
+---@field kind "step"|"contact"|"finger"
+---@field t number after the step [s]
+---@field num_steps integer since the simulation's start
+---@field speed number? step: of the object [m/s]
+---@field a string? contact: a body's name
+---@field b string? contact: the other's
+---@field p_W Vector3? contact
+---@field penetration number? contact: overlap before the step [m], 0 without
+---@field force_N number? contact, finger
+---@field slip_speed number? contact: [m/s]
+---@field finger FingerName? finger
+---@field touching boolean? finger
+---@field slipping boolean? finger
+---@field slip_mm number? finger: since it was put on
+
 ---A picture of the last step. It belongs to the run directory, unless it names a file.
 ---@param options? ShotOptions
 function Session:shot(options) end
@@ -671,6 +694,7 @@ function Simulation:touch(options) end
 ---Moves where a finger's spring pulls, evenly over `seconds`: f = -k (p - p_target), within the
 ---friction cone and the force cap.
 ---@param options MoveOptions
+---@return boolean # true when break_when stopped it
 function Simulation:move(options) end
 
 ---@class MoveOptions
@@ -688,6 +712,7 @@ function Simulation:lift(options) end
 
 ---Lets time pass with the targets where they are.
 ---@param options? WaitOptions
+---@return boolean # true when break_when stopped it
 function Simulation:wait(options) end
 
 ---@class WaitOptions
@@ -695,6 +720,7 @@ function Simulation:wait(options) end
 
 ---Physics steps with the targets where they are.
 ---@param steps? integer 1
+---@return boolean # true when break_when stopped it
 function Simulation:step(steps) end
 
 ---Takes physics steps back, exactly.

@@ -110,6 +110,49 @@ TEST(SimulationBindingTest, GoesBackExactlyAndForksGoTheirOwnWay) {
             "true\ttrue\ttrue\ttrue\ntrue\ttrue\tsim.2\ntrue\ttrue\n0.0\t0\tsim.1\n");
 }
 
+TEST(SimulationBindingTest, BreakWhenEndsAnActionAtTheStepItAsksFor) {
+  EXPECT_EQ(Script(R"(
+    local s = open()
+    s:record{ dir = "out/run", pictures = "none" }
+    local sim = s:simulate()
+    sim:touch{ finger = "index", p_OC = {-0.05, 0, -0.02} }
+    local free = sim:fork()
+    local kinds = {}
+    s:break_when(function(ev)
+      kinds[ev.kind] = (kinds[ev.kind] or 0) + 1
+      assert((ev.penetration == nil) == (ev.kind ~= "contact") and (ev.finger == nil) == (ev.kind ~= "finger"))
+      return ev.kind == "step" and ev.speed > 0.01
+    end)
+    print(sim:move{ finger = "index", by = {0.060, 0, 0}, seconds = 1 }, sim.step_id, sim.t < 0.9)
+    print(kinds.step == sim.num_steps, kinds.contact > kinds.step, kinds.finger == kinds.step - 1)
+    local speed = sim.object.v[1] print(speed > 0.01, speed < 0.012)
+    local stopped = sim.num_steps
+    s:break_when(nil)
+    print(sim:wait{ seconds = 0.1 }, free:move{ finger = "index", by = {0.060, 0, 0}, seconds = 1 })
+    free:back(free.num_steps - stopped) print(free.object.v[1] == speed)
+    s:break_when(function(ev) return ev.kind == "finger" and ev.slip_mm > 1e9 end)
+    print(sim:step(5))
+    s:break_when(function(ev) error("no") end)
+    print(pcall(sim.step, sim, 1)))")
+                .find("true\tsim.2\ttrue\ntrue\ttrue\ttrue\ntrue\ttrue\nfalse\tfalse\ntrue\n"
+                      "false\nfalse\t"),
+            0U);
+}
+
+TEST(SessionBindingTest, APredicateThatNeverEndsIsStopped) {
+  const TestFolder folder;
+  ScriptConfig config = ConfigIn(folder);
+  config.machine.seconds = 0.05;
+  try {
+    RunIn(folder,
+          "local s = open() s:break_when(function() while true do end end) s:simulate():step()",
+          config);
+    FAIL() << "no failure";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("out of time"), std::string::npos) << error.what();
+  }
+}
+
 TEST(SessionBindingTest, SetChangesValuesAndTheSeedIsTheSessions) {
   EXPECT_EQ(Script("local s = open{ seed = 7, set = { ['object.mass'] = 0.3, "
                    "['environment.left.p'] = {0.3, 0, 0.05} } }\n"

@@ -153,6 +153,26 @@ TEST_F(SessionTest, RefusesOverlapsSettlingLateAndTwoRecordings) {
   EXPECT_THROW(session.Record(folder_ / "b", PictureMode::kNone), InputError);
 }
 
+TEST_F(SessionTest, AShortenedActionIsTheOneThatEndedThere) {
+  Session whole(MakeRulerScene(), {}), part(MakeRulerScene(), {});
+  whole.Record(folder_ / "whole", PictureMode::kNone);
+  part.Record(folder_ / "part", PictureMode::kNone);
+  const auto a = whole.Simulate(), b = part.Simulate();
+  whole.Step(a, 20);
+  part.Step(b, 50);
+  part.Shorten(b, 30);
+  EXPECT_EQ(a->state().bodies[0].p_WB, b->state().bodies[0].p_WB);
+  EXPECT_EQ(a->num_states(), b->num_states());
+  whole.Save(std::nullopt);
+  part.Save(std::nullopt);
+  const StepRecord x = LoadRun(folder_ / "whole").steps.back();
+  const StepRecord y = LoadRun(folder_ / "part").steps.back();
+  EXPECT_EQ(x.id, y.id);
+  EXPECT_EQ(x.t, y.t);
+  EXPECT_EQ(x.details["moved_mm"], y.details["moved_mm"]);
+  EXPECT_EQ(y.details["stopped"], true);
+}
+
 TEST_F(SessionTest, AFailedActionIsNoStep) {
   Session session(MakeRulerScene(), {});
   const auto sim = session.Simulate();
