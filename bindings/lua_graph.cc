@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "app/pipeline/describe_plan.h"
 #include "bindings/lua_planner.h"
@@ -88,22 +89,13 @@ void GraphScore(lua_State* L, LuaGraph& graph) {
   Advance(L, graph, std::move(next), &PlanRecord::AddScores);
 }
 
-bool GraphPruneStep(lua_State* L, LuaGraph& graph) {
+bool GraphPruneStep(lua_State* L, LuaGraph& graph, const std::optional<int>& nodes) {
   RequireScores(graph.graph());
-  ContactGraph next = graph.graph();
-  switch (next.stage()) {
-    case GraphStage::kScored:
-      next.PruneByContext();
-      break;
-    case GraphStage::kPrunedContext:
-      next.PruneByFree();
-      break;
-    case GraphStage::kPrunedFree:
-      next.Connect();
-      break;
-    default:
-      return false;
+  if (nodes && *nodes < 1) {
+    throw InputError("", "nodes", "a whole number from 1", std::to_string(*nodes));
   }
+  ContactGraph next = graph.graph();
+  if (!next.PruneNodes(nodes.value_or(std::numeric_limits<int>::max()))) return false;
   Advance(L, graph, std::move(next), &PlanRecord::AddPruning);
   return true;
 }
@@ -120,7 +112,7 @@ void GraphPrune(lua_State* L, LuaGraph& graph, const PruneOptions& options) {
     graph.past.back() = std::make_shared<const Moment<ContactGraph>>(
         Moment<ContactGraph>{std::move(next), graph.past.back()->step});
   }
-  while (GraphPruneStep(L, graph)) {
+  while (GraphPruneStep(L, graph, std::nullopt)) {
   }
 }
 
@@ -382,7 +374,7 @@ const ClassInfo& GraphClass() {
                               {
                                   Method<&GraphScore>("score"),
                                   Method<&GraphPrune>("prune", "options"),
-                                  Method<&GraphPruneStep>("prune_step"),
+                                  Method<&GraphPruneStep>("prune_step", "nodes"),
                                   Method<&GraphWhy>("why", "id"),
                                   Method<&GraphWhy>("why_not", "id"),
                                   Method<&GraphNode>("node", "id"),

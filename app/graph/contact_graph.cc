@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "app/core/check.h"
@@ -200,7 +201,7 @@ int ContactGraph::NumKeptEach() const {
 }
 
 void ContactGraph::SetTopPercent(double top_percent) {
-  if (stage_ > GraphStage::kScored) {
+  if (num_prune_steps_ > 0) {
     throw InputError("", "top_percent", "a graph that is not pruned yet", "one that is");
   }
   ContactGraphConfig config = config_;
@@ -209,34 +210,61 @@ void ContactGraph::SetTopPercent(double top_percent) {
   config_ = config;
 }
 
+bool ContactGraph::PruneNodes(int count) {
+  PREGRASP_CHECK(stage_ != GraphStage::kMeshed && count >= 1, count);
+  if (stage_ == GraphStage::kConnected) return false;
+  const bool connect = stage_ == GraphStage::kPrunedFree;
+  const int total = connect ? static_cast<int>(kept_.size()) : NumKeptEach();
+  const int end = std::min(total, num_done_ + std::min(count, total));
+  if (connect) neighbors_.resize(nodes_.size());
+  for (int i = num_done_; i < end; ++i) {
+    switch (stage_) {
+      case GraphStage::kScored:
+        nodes_[order_c_[i]].initial = nodes_[order_c_[i]].kept = true;
+        break;
+      case GraphStage::kPrunedContext:
+        nodes_[order_n_[i]].kept = true;
+        break;
+      default:
+        ConnectNode(kept_[i]);
+    }
+  }
+  num_done_ = end;
+  ++num_prune_steps_;
+  if (!connect) {
+    kept_.clear();
+    for (const ContactNode& node : nodes_) {
+      if (node.kept) kept_.push_back(node.id);
+    }
+  }
+  if (num_done_ == total) {
+    stage_ = static_cast<GraphStage>(static_cast<int>(stage_) + 1);
+    num_done_ = 0;
+  }
+  return true;
+}
+
+void ContactGraph::ConnectNode(int a) {
+  for (const int b : kept_) {
+    if (nodes_[a].thumb == nodes_[b].thumb || nodes_[a].index == nodes_[b].index) {
+      neighbors_[a].push_back(b);
+    }
+  }
+}
+
 void ContactGraph::PruneByContext() {
   PREGRASP_CHECK(stage_ == GraphStage::kScored, static_cast<int>(stage_));
-  for (int i = 0; i < NumKeptEach(); ++i) {
-    nodes_[order_c_[i]].initial = nodes_[order_c_[i]].kept = true;
-  }
-  stage_ = GraphStage::kPrunedContext;
+  PruneNodes(std::numeric_limits<int>::max());
 }
 
 void ContactGraph::PruneByFree() {
   PREGRASP_CHECK(stage_ == GraphStage::kPrunedContext, static_cast<int>(stage_));
-  for (int i = 0; i < NumKeptEach(); ++i) nodes_[order_n_[i]].kept = true;
-  for (const ContactNode& node : nodes_) {
-    if (node.kept) kept_.push_back(node.id);
-  }
-  stage_ = GraphStage::kPrunedFree;
+  PruneNodes(std::numeric_limits<int>::max());
 }
 
 void ContactGraph::Connect() {
   PREGRASP_CHECK(stage_ == GraphStage::kPrunedFree, static_cast<int>(stage_));
-  neighbors_.assign(nodes_.size(), {});
-  for (const int a : kept_) {
-    for (const int b : kept_) {
-      if (nodes_[a].thumb == nodes_[b].thumb || nodes_[a].index == nodes_[b].index) {
-        neighbors_[a].push_back(b);
-      }
-    }
-  }
-  stage_ = GraphStage::kConnected;
+  PruneNodes(std::numeric_limits<int>::max());
 }
 
 void ContactGraph::Prune() {
@@ -254,6 +282,7 @@ const std::vector<int>& ContactGraph::neighbors(int id) const {
 }
 
 int ContactGraph::num_edges() const {
+  if (stage_ != GraphStage::kConnected) return 0;
   int count = 0;
   for (const std::vector<int>& ids : neighbors_) count += static_cast<int>(ids.size());
   // Each edge between two nodes is in both lists, each loop in one.

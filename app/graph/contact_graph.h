@@ -76,10 +76,17 @@ class ContactGraph {
   void PruneByFree();
   /// Connects kept nodes that share a triangle, and each with itself; needs kPrunedFree.
   void Connect();
+  /// The first `count` nodes, at least 1, that are still to do of whichever of these three steps is
+  /// next; false when all are done. Needs scores.
+  bool PruneNodes(int count);
   /// The three steps above that are still to do. @throws InputError before Score.
   void Prune();
 
   GraphStage stage() const { return stage_; }
+  /// Nodes done of the pruning step that PruneNodes has begun; 0 between steps.
+  int num_done() const { return num_done_; }
+  /// Calls so far of the functions above that prune.
+  int num_prune_steps() const { return num_prune_steps_; }
   const TriangleMesh& mesh() const { return mesh_; }
   const ContactGraphConfig& config() const { return config_; }
   const std::vector<ContactNode>& nodes() const { return nodes_; }
@@ -89,7 +96,7 @@ class ContactGraph {
   const std::vector<int>& kept() const { return kept_; }
   /// Ids of the kept nodes that `id` (kept) is connected to, itself included, ascending.
   const std::vector<int>& neighbors(int id) const;
-  /// Number of undirected edges, loops included.
+  /// Number of undirected edges, loops included; 0 before the graph is connected.
   int num_edges() const;
 
   /// @throws InputError if there is no node `id`.
@@ -97,10 +104,12 @@ class ContactGraph {
 
  private:
   int NumKeptEach() const;
+  void ConnectNode(int id);
 
   TriangleMesh mesh_;
   ContactGraphConfig config_;
   GraphStage stage_ = GraphStage::kMeshed;
+  int num_done_ = 0, num_prune_steps_ = 0;
   std::vector<ContactNode> nodes_;
   std::vector<int> order_c_, order_n_;  // node ids, best first
   std::vector<int> kept_;

@@ -52,7 +52,10 @@ std::vector<std::string> DescribePruning(const ContactGraph& graph) {
   const long initial = count([](const ContactNode& node) { return node.initial; });
   const long kept = count([](const ContactNode& node) { return node.kept; });
   std::vector<std::string> lines;
-  switch (graph.stage()) {
+  // The step that was taken last, or is under way.
+  GraphStage step = graph.stage();
+  if (graph.num_done() > 0) step = static_cast<GraphStage>(static_cast<int>(step) + 1);
+  switch (step) {
     case GraphStage::kPrunedContext:
       lines = {
           fmt::format("The {:g} % with the best score among the surroundings stay: with one of "
@@ -71,6 +74,9 @@ std::vector<std::string> DescribePruning(const ContactGraph& graph) {
           "States that share a triangle are connected: one finger stays while the other "
           "changes its place.",
           fmt::format("edges\t{}", graph.num_edges())};
+  }
+  if (graph.num_done() > 0) {
+    lines.push_back(fmt::format("so far\t{} nodes of this step", graph.num_done()));
   }
   lines.push_back(fmt::format("may begin\t{}", initial));
   lines.push_back(fmt::format("kept\t{} of {}", kept, graph.nodes().size()));

@@ -210,7 +210,7 @@ void PlanRecord::AddScores(const ContactGraph& graph) {
 }
 
 void PlanRecord::AddPruning(const ContactGraph& graph) {
-  const int number = static_cast<int>(graph.stage()) - static_cast<int>(GraphStage::kScored);
+  const int number = graph.num_prune_steps();
   PREGRASP_CHECK(number >= 1, number);
   JournalStep step =
       session_.MakeStep(fmt::format("graph.prune.{}", number), "graph", planner_.start(), {});

@@ -29,7 +29,7 @@ class PlanRecord {
 
   void AddMesh(const ContactGraph& graph);
   void AddScores(const ContactGraph& graph);
-  /// After each of the graph's pruning steps: graph.prune.1 to .3.
+  /// After each of the graph's pruning steps: graph.prune.1 to .3, or more of fewer nodes.
   void AddPruning(const ContactGraph& graph);
   void AddPath(const ContactGraph& graph, const ContactPath& path);
   void AddIteration(const Mppi& mppi, const MppiState& state);

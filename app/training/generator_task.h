@@ -14,7 +14,8 @@ struct GeneratorTaskConfig {
   ContactFeatureConfig contacts;
   std::vector<int> hidden_widths = {256, 256};  ///< of the three decoders and recognition networks
   int latent_size = 8;
-  double kl_weight = 0.01;  ///< of the divergence from the standard normal (the paper's option)
+  double kl_weight = 0.05;  ///< of the divergence from the standard normal; at the paper's 0.01
+                            ///< half as many completions of held-out objects are feasible
   int contexts_per_step = 16;
   int grasps_per_context = 16;
   std::uint64_t seed = 1;

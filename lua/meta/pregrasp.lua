@@ -292,8 +292,9 @@ function Graph:prune(options) end
 ---@field top_percent? number instead of the graph's
 
 ---One of three steps: the best by s_c stay, the best by s_n stay, edges are built.
+---@param nodes? integer at most so many nodes of it: prune_step(1) is a node at a time
 ---@return boolean # false when there is none left
-function Graph:prune_step() end
+function Graph:prune_step(nodes) end
 
 ---Why a node is there: a sentence when printed, and the numbers that decided.
 ---@param id integer

@@ -83,6 +83,19 @@ TEST_F(PlannerScriptTest, AGraphIsMeshedScoredAndPrunedStepByStep) {
             "connected\tgraph.prune.3\t8\ntrue\ttrue\t5.0\n");
 }
 
+TEST_F(PlannerScriptTest, PruningANodeAtATimeEndsAsThreeStepsDo) {
+  EXPECT_EQ(Script(R"(
+    local g = graph() g:score()
+    local whole = g:fork() whole:prune()
+    g:prune_step(1) print(g.stage, g.step_id, #g.initial)
+    g:prune_step(2) print(g.stage, g.step_id, #g.initial)
+    while g:prune_step(1) do end
+    local same = g.num_edges == whole.num_edges and #g.kept == #whole.kept
+    for i = 1, #g.kept do same = same and g.kept[i] == whole.kept[i] end
+    print(g.stage, #g.initial, same))"),
+            "scored\tgraph.prune.1\t1\nscored\tgraph.prune.2\t3\nconnected\t8\ttrue\n");
+}
+
 TEST_F(PlannerScriptTest, PruningTakesAnotherPercentageAndGoesBackExactly) {
   EXPECT_EQ(Script(R"(
     local g = graph() g:score()
