@@ -17,15 +17,12 @@ bool CollideOrdered(const PlacedConvex& larger, const PlacedConvex& smaller, dou
   const bool box_larger = larger.convex->kind == ConvexKind::kBox;
   const bool box_smaller = smaller.convex->kind == ConvexKind::kBox;
   if (box_larger) {
-    const FaceOutcome outcome = CollideWithBoxFace(larger, smaller, margin, manifold);
+    const FaceOutcome outcome = CollideWithBoxFace(larger, smaller, margin, 0, manifold);
     if (outcome != FaceOutcome::kNotApplicable) return outcome == FaceOutcome::kTouching;
   }
   if (box_smaller) {
-    const FaceOutcome outcome = CollideWithBoxFace(smaller, larger, margin, manifold);
-    if (outcome == FaceOutcome::kTouching) {
-      manifold->nhat_W = -manifold->nhat_W;
-      for (int i = 0; i < manifold->size; ++i) manifold->points[i].feature |= kFaceOfB;
-    }
+    const FaceOutcome outcome = CollideWithBoxFace(smaller, larger, margin, kFaceOfB, manifold);
+    if (outcome == FaceOutcome::kTouching) manifold->nhat_W = -manifold->nhat_W;
     if (outcome != FaceOutcome::kNotApplicable) return outcome == FaceOutcome::kTouching;
   }
   return box_larger && box_smaller ? CollideBoxes(larger, smaller, margin, manifold)

@@ -47,9 +47,10 @@ inline constexpr std::uint32_t kFaceOfB = 1U << 18;
 enum class FaceOutcome { kNotApplicable, kApart, kTouching };
 
 /// Contact of `q` with one face of box `a` when q's bounds lie within that face's outline, so that
-/// no other face can matter: q's lowest features against a plane. The normal points from a to q.
+/// no other face can matter: q's lowest features against a plane. The normal points from a to q;
+/// `flag` is set in the points' features.
 FaceOutcome CollideWithBoxFace(const PlacedConvex& a, const PlacedConvex& q, double margin,
-                               Manifold* manifold);
+                               std::uint32_t flag, Manifold* manifold);
 
 /// Separating-axis test over faces and edge pairs, then clipping (Gottschalk et al. 1996;
 /// Gregorius, "The separating axis test between convex polyhedra", GDC 2013).

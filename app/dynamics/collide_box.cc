@@ -225,8 +225,8 @@ class BoxPair {
     std::array<int, Manifold::kMaxPoints> chosen;
     Matrix3 R_WT;
     R_WT << ref.R_WP.col(ix), ref.R_WP.col(iy), s * ref.R_WP.col(i);
-    const int num_chosen =
-        ChooseFour(points.data(), count, Approach(ref, inc, ref.p_WP, R_WT), &chosen);
+    const int num_chosen = ChoosePoints(points.data(), count, Approach(ref, inc, ref.p_WP, R_WT),
+                                        manifold->loaded_features(), &chosen);
     for (int n = 0; n < num_chosen; ++n) {
       const PlanarPoint& point = points[chosen[n]];
       Vector3 p_ref;

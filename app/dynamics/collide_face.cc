@@ -18,6 +18,7 @@ struct FacePlane {
   int i = 0;
   double s = 1.0;
   double margin = 0.0;
+  std::uint32_t flag = 0;  // set in every feature
 
   // Adds point p_A of q's surface if it is near enough.
   void Add(const Vector3& p_A, std::uint32_t feature, Manifold* manifold) const {
@@ -25,7 +26,7 @@ struct FacePlane {
     if (phi > margin) return;
     Vector3 p_AC = p_A;
     p_AC[i] -= 0.5 * s * phi;
-    manifold->Add(a.p_WP + a.R_WP * p_AC, phi, feature);
+    manifold->Add(a.p_WP + a.R_WP * p_AC, phi, feature | flag);
   }
 };
 
@@ -114,31 +115,34 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
       if (height > limit || count > kMaxVertices) continue;
       const Vector3& vertex = vertices[first + i];
       points[count++] = {x.dot(vertex), y.dot(vertex), base + height,
-                         static_cast<std::uint32_t>(first + i)};
+                         static_cast<std::uint32_t>(first + i) | plane.flag};
     }
   }
   if (lowest_height > limit) return;
   points[0] = {x.dot(vertices[lowest]), y.dot(vertices[lowest]), base + lowest_height,
-               static_cast<std::uint32_t>(lowest)};
+               static_cast<std::uint32_t>(lowest) | plane.flag};
   std::array<int, Manifold::kMaxPoints> chosen;
-  // A handful is taken as it is, without the lowest's copy.
-  const int skip = count <= Manifold::kMaxPoints + 1 ? 1 : 0;
+  // Four are taken as they are, without the lowest's copy.
+  const int skip = count <= 5 ? 1 : 0;
   Matrix3 R_WT;
   R_WT << plane.a.R_WP.col(ix), plane.a.R_WP.col(iy), plane.s * plane.a.R_WP.col(plane.i);
-  const int num_chosen = ChooseFour(points.data() + skip, count - skip,
-                                    Approach(plane.a, plane.q, plane.q.p_WP, R_WT), &chosen);
+  const int num_chosen = ChoosePoints(points.data() + skip, count - skip,
+                                      Approach(plane.a, plane.q, plane.q.p_WP, R_WT),
+                                      manifold->loaded_features(), &chosen);
   for (int k = 0; k < num_chosen; ++k) {
     const PlanarPoint& point = points[skip + chosen[k]];
-    plane.Add(plane.p_AQ + plane.R_AQ * vertices[point.feature], point.feature, manifold);
+    plane.Add(plane.p_AQ + plane.R_AQ * vertices[point.feature & ~plane.flag], point.feature,
+              manifold);
   }
 }
 
 }  // namespace
 
 FaceOutcome CollideWithBoxFace(const PlacedConvex& a, const PlacedConvex& q, double margin,
-                               Manifold* manifold) {
+                               std::uint32_t flag, Manifold* manifold) {
   FacePlane plane{a, q, a.R_WP.transpose() * q.R_WP, a.R_WP.transpose() * (q.p_WP - a.p_WP)};
   plane.margin = margin;
+  plane.flag = flag;
   const Vector3& half = a.convex->half;
   int num_inside = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -10,11 +10,12 @@ namespace pregrasp {
 namespace {
 
 // Key layout: body a, body b (12 bits each), piece a, piece b (10 bits each), feature (20 bits).
-constexpr int kMaxBodies = 1 << 12, kMaxPieces = 1 << 10;
+constexpr int kMaxBodies = 1 << 12, kMaxPieces = 1 << 10, kFeatureBits = 20;
 
 std::uint64_t MakeKey(int body_a, int body_b, int piece_a, int piece_b) {
   return (static_cast<std::uint64_t>(body_a) << 52) | (static_cast<std::uint64_t>(body_b) << 40) |
-         (static_cast<std::uint64_t>(piece_a) << 30) | (static_cast<std::uint64_t>(piece_b) << 20);
+         (static_cast<std::uint64_t>(piece_a) << 30) |
+         (static_cast<std::uint64_t>(piece_b) << kFeatureBits);
 }
 
 CollisionScene::Scratch::Bounds BoundsOf(const Matrix3& R_WB, const Vector3& p_WB,
@@ -37,6 +38,17 @@ PlacedConvex Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_W
   placed.R_WP = R_WB * convex.X_BP.linear();
   placed.p_WP = p_WB + R_WB * convex.X_BP.translation();
   return placed;
+}
+
+// Names the points of the pieces `key` that bore load, and takes them and all before them off
+// `cache`, which is in the order of the keys.
+void TakeLoaded(std::uint64_t key, std::span<const WorldState::CachedImpulse>* cache,
+                Manifold* manifold) {
+  while (!cache->empty() && cache->front().key < key) *cache = cache->subspan(1);
+  while (!cache->empty() && cache->front().key >> kFeatureBits == key >> kFeatureBits) {
+    manifold->loaded[manifold->num_loaded++] = static_cast<std::uint32_t>(cache->front().key - key);
+    *cache = cache->subspan(1);
+  }
 }
 
 }  // namespace
@@ -119,6 +131,7 @@ void CollisionScene::PlaceMovables(const std::vector<BodyKernel>& kernels,
 }
 
 void CollisionScene::CollidePair(const Pair& pair, double margin, const Scratch& scratch,
+                                 std::span<const WorldState::CachedImpulse>* cache,
                                  std::vector<Contact>* contacts) const {
   const CollisionBody &a = bodies_[pair.a], &b = bodies_[pair.b];
   const auto placed = [&](const CollisionBody& body) {
@@ -128,6 +141,8 @@ void CollisionScene::CollidePair(const Pair& pair, double margin, const Scratch&
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
     for (std::size_t j = 0; j < b.pieces.size(); ++j) {
       Contact& contact = contacts->emplace_back();
+      contact.key = MakeKey(pair.a, pair.b, static_cast<int>(i), static_cast<int>(j));
+      TakeLoaded(contact.key, cache, &contact.manifold);
       if (!Collide(pieces_a[i], pieces_b[j], margin, &contact.manifold)) {
         contacts->pop_back();
         continue;
@@ -137,22 +152,25 @@ void CollisionScene::CollidePair(const Pair& pair, double margin, const Scratch&
       contact.body_a = pair.a;
       contact.body_b = pair.b;
       contact.friction = pair.friction;
-      contact.key = MakeKey(pair.a, pair.b, static_cast<int>(i), static_cast<int>(j));
     }
   }
 }
 
 void CollisionScene::FindContacts(const std::vector<BodyKernel>& kernels,
-                                  const std::vector<BodyMotion>& motions, double dt,
+                                  const std::vector<BodyMotion>& motions,
+                                  const std::vector<WorldState::CachedImpulse>& cache, double dt,
                                   Scratch* scratch, std::vector<Contact>* contacts) const {
   PlaceMovables(kernels, motions, dt, scratch);
+  std::span<const WorldState::CachedImpulse> cache_left = cache;
   contacts->clear();
   for (const Pair& pair : pairs_) {
     const int movable_a = bodies_[pair.a].movable, movable_b = bodies_[pair.b].movable;
     const auto& bounds_a = movable_a < 0 ? fixed_bounds_[pair.a] : scratch->bounds[movable_a];
     const auto& bounds_b = movable_b < 0 ? fixed_bounds_[pair.b] : scratch->bounds[movable_b];
     const double margin = margin_ + bounds_a.margin + bounds_b.margin;
-    if (Overlaps(bounds_a, bounds_b, margin)) CollidePair(pair, margin, *scratch, contacts);
+    if (Overlaps(bounds_a, bounds_b, margin)) {
+      CollidePair(pair, margin, *scratch, &cache_left, contacts);
+    }
   }
 }
 

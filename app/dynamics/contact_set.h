@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "app/dynamics/convex.h"
 #include "app/dynamics/manifold.h"
 #include "app/dynamics/motion.h"
+#include "app/dynamics/world.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {
@@ -41,8 +43,10 @@ class CollisionScene {
   /// in contact when they are nearer than the margin plus the distance they can cover in `dt`, so
   /// that a body stops at the surface instead of inside it.
   /// @param motions  one per movable, velocities as predicted without contacts.
+  /// @param cache  impulses of the last step: points that bore load stay in contact.
   void FindContacts(const std::vector<BodyKernel>& kernels, const std::vector<BodyMotion>& motions,
-                    double dt, Scratch* scratch, std::vector<Contact>* contacts) const;
+                    const std::vector<WorldState::CachedImpulse>& cache, double dt,
+                    Scratch* scratch, std::vector<Contact>* contacts) const;
 
  private:
   struct CollisionBody {
@@ -60,6 +64,7 @@ class CollisionScene {
   void PlaceMovables(const std::vector<BodyKernel>& kernels, const std::vector<BodyMotion>& motions,
                      double dt, Scratch* scratch) const;
   void CollidePair(const Pair& pair, double margin, const Scratch& scratch,
+                   std::span<const WorldState::CachedImpulse>* cache,
                    std::vector<Contact>* contacts) const;
 
   double margin_;

@@ -314,6 +314,7 @@ void ContactSolver::AddPairs(int first, int size) {
     AddPair(first, first + far, k[far]);
     AddPair(first + opposite, first + near, coupling(opposite, near));
   }
+  for (int i = 4; i < size; ++i) pairs_.push_back({first + i});
 }
 
 void ContactSolver::AddPair(int a, int b, double K_ab) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "app/core/math.h"
 #include "app/dynamics/convex.h"
@@ -15,15 +16,21 @@ struct ManifoldPoint {
   std::uint32_t feature = 0;  ///< names the pair of features, to find its impulse in the next step
 };
 
-/// Contact between two convex shapes A and B: one normal, at most four points.
+/// Contact between two convex shapes A and B: one normal, four points that stand for all, and those
+/// others that bore load in the last step.
 struct Manifold {
-  static constexpr int kMaxPoints = 4;
+  static constexpr int kMaxPoints = 8;
 
   Vector3 nhat_W = Vector3::UnitZ();  ///< from A to B
   int size = 0;
   std::array<ManifoldPoint, kMaxPoints> points;
+  int num_loaded = 0;
+  std::array<std::uint32_t, kMaxPoints> loaded;  ///< features that bore load in the last step
 
   void Clear() { size = 0; }
+  std::span<const std::uint32_t> loaded_features() const {
+    return {loaded.data(), static_cast<std::size_t>(num_loaded)};
+  }
   void Add(const Vector3& p_W, double phi, std::uint32_t feature) {
     points[size++] = {p_W, phi, feature};
   }
@@ -36,7 +43,7 @@ struct PlanarPoint {
   std::uint32_t feature = 0;
 };
 
-/// The most points that ChooseFour chooses from.
+/// The most points that ChoosePoints chooses from.
 inline constexpr int kMaxPlanarPoints = 256;
 
 /// How the gap between two pieces changes in a step, over the places of the tangent plane.
@@ -49,12 +56,15 @@ struct Approach {
   double At(double x, double y) const { return at_origin + per_x * x + per_y * y; }
 };
 
-/// Chooses at most four of `count` points (kMaxPlanarPoints at most) that stand for all: the
-/// deepest at the end of the step, the farthest from it, the one that makes the largest triangle,
-/// and the one farthest outside that triangle. Ties within a tolerance go to the lower index, so
-/// that the choice does not flicker.
+/// Chooses among `count` points (kMaxPlanarPoints at most). Four at most stand for all: the deepest
+/// at the end of the step, the farthest from it, the one that makes the largest triangle, and the
+/// one farthest outside that triangle. Ties within a tolerance go to the lower index, so that the
+/// choice does not flicker. Those of `loaded` that are not in the plane of the four are kept too,
+/// as room allows: of a crowd of points almost in a plane the body rests on three, and they must
+/// stay while the four change.
 /// @returns how many; their indices are in `chosen`.
-int ChooseFour(const PlanarPoint* points, int count, const Approach& approach,
-               std::array<int, Manifold::kMaxPoints>* chosen);
+int ChoosePoints(const PlanarPoint* points, int count, const Approach& approach,
+                 std::span<const std::uint32_t> loaded,
+                 std::array<int, Manifold::kMaxPoints>* chosen);
 
 }  // namespace pregrasp

@@ -377,7 +377,8 @@ class Overlap {
     if (near == 0) return OverlapResult::kNone;
     manifold->nhat_W = R_WT_.col(2);
     std::array<int, Manifold::kMaxPoints> chosen;
-    const int num_chosen = ChooseFour(points.data(), near, approach_, &chosen);
+    const int num_chosen =
+        ChoosePoints(points.data(), near, approach_, manifold->loaded_features(), &chosen);
     for (int n = 0; n < num_chosen; ++n) {
       const Candidate& c = candidates_[index[chosen[n]]];
       manifold->Add(origin_ + R_WT_ * Vector3(c.x, c.y, 0.5 * (c.height_a + c.height_b)),

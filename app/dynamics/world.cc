@@ -149,7 +149,7 @@ struct World::Impl {
 
   // Contacts and fingers, from scratch->motions to the solver's velocities.
   void SolveContacts(const WorldState& state, StepScratch* scratch) const {
-    collision.FindContacts(kernels, scratch->motions, config.dt, &scratch->collision,
+    collision.FindContacts(kernels, scratch->motions, state.cache, config.dt, &scratch->collision,
                            &scratch->contacts);
     scratch->solver.SetContacts(config, kernels, scratch->motions, scratch->contacts, state.cache);
     for (int f = 0; f < kNumFingers; ++f) {

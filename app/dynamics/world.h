@@ -82,8 +82,8 @@ struct WorldState {
   double t = 0.0;
   std::vector<BodyState> bodies;  ///< the movable bodies in scene order; the object first
   std::array<FingertipState, kNumFingers> fingers;  ///< a plan uses thumb and index, a lift all
-  /// Impulses of the last step by (body pair, feature), to start the next one from; opaque to
-  /// callers.
+  /// Impulses of the last step by (body pair, feature), to start the next one from and to keep
+  /// loaded points in contact; opaque to callers.
   struct CachedImpulse {
     std::uint64_t key = 0;
     Vector3 impulse_W = Vector3::Zero();
