@@ -20,6 +20,13 @@ ProgramResult Pipe(const std::string& text, const TestFolder& folder,
   return RunProgram(arguments, folder.path(), text);
 }
 
+class ReplTerminalTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!Terminal::IsPossible()) GTEST_SKIP() << "no pseudo-terminals here: is /dev/pts mounted?";
+  }
+};
+
 TEST(ReplPipeTest, ShowsValuesAndNothingElse) {
   const TestFolder folder;
   const ProgramResult result = Pipe(
@@ -65,7 +72,7 @@ TEST(ReplPipeTest, ARecordingIsFinishedAtTheEnd) {
   EXPECT_EQ(LoadRun(folder.path() / "out/x").steps.back().id, "sim.1");
 }
 
-TEST(ReplTerminalTest, ReadsOverSeveralLinesAndGoesOnAfterAnErrorWithItsTraceback) {
+TEST_F(ReplTerminalTest, ReadsOverSeveralLinesAndGoesOnAfterAnErrorWithItsTraceback) {
   const TestFolder folder;
   Terminal terminal({"repl", "scenes/ruler.lua"}, folder.path());
   ASSERT_TRUE(terminal.Await("Ctrl-D ends\r\ns = Session(ruler)\r\n> ")) << terminal.rest();
@@ -82,7 +89,7 @@ TEST(ReplTerminalTest, ReadsOverSeveralLinesAndGoesOnAfterAnErrorWithItsTracebac
   EXPECT_EQ(terminal.AwaitEnd(), 0);
 }
 
-TEST(ReplTerminalTest, CompletesAndRemembersOverSessions) {
+TEST_F(ReplTerminalTest, CompletesAndRemembersOverSessions) {
   const TestFolder folder;
   {
     Terminal terminal({"repl", "scenes/ruler.lua"}, folder.path());
@@ -102,7 +109,7 @@ TEST(ReplTerminalTest, CompletesAndRemembersOverSessions) {
   EXPECT_EQ(terminal.AwaitEnd(), 0);
 }
 
-TEST(ReplTerminalTest, CtrlCEndsALongCallOrALineAndLeavesTheStateUsable) {
+TEST_F(ReplTerminalTest, CtrlCEndsALongCallOrALineAndLeavesTheStateUsable) {
   const TestFolder folder;
   Terminal terminal({"repl", "scenes/ruler.lua"}, folder.path());
   ASSERT_TRUE(terminal.Await("\n> ")) << terminal.rest();
@@ -126,7 +133,7 @@ TEST(ReplTerminalTest, CtrlCEndsALongCallOrALineAndLeavesTheStateUsable) {
   EXPECT_EQ(terminal.AwaitEnd(), 0);
 }
 
-TEST(ReplTerminalTest, WhatIsTypedAheadIsRead) {
+TEST_F(ReplTerminalTest, WhatIsTypedAheadIsRead) {
   const TestFolder folder;
   Terminal terminal({"repl"}, folder.path());
   terminal.Type("6 * 7\n\x04");
@@ -134,7 +141,7 @@ TEST(ReplTerminalTest, WhatIsTypedAheadIsRead) {
   EXPECT_NE(terminal.rest().find("\n42\r\n"), std::string::npos) << terminal.rest();
 }
 
-TEST(ReplTerminalTest, APoliteKillEndsIt) {
+TEST_F(ReplTerminalTest, APoliteKillEndsIt) {
   const TestFolder folder;
   Terminal terminal({"repl", "scenes/ruler.lua"}, folder.path());
   ASSERT_TRUE(terminal.Await("\n> ")) << terminal.rest();

@@ -18,6 +18,15 @@ namespace pregrasp {
 /// The built program at a pseudo-terminal of 100 columns, typed at and read from.
 class Terminal {
  public:
+  /// Whether this machine gives pseudo-terminals: some containers do not.
+  static bool IsPossible() {
+    int master = -1, slave = -1;
+    if (openpty(&master, &slave, nullptr, nullptr, nullptr) != 0) return false;
+    close(master);
+    close(slave);
+    return true;
+  }
+
   Terminal(const std::vector<std::string>& arguments, const std::filesystem::path& directory) {
     winsize size{};
     size.ws_row = 40;
