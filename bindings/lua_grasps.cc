@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "app/core/interrupt.h"
 #include "bindings/lua_grasp.h"
 #include "bindings/lua_planner.h"
 
@@ -13,22 +10,6 @@ const Schema kLift{"Lift", {"held", "height", "shift", "turn_deg", "slip_mm", "d
 
 constexpr int kGraspKib = 20;
 
-double Share(const LuaGrasps& grasps, bool (*feasible)(const CompletedGrasp&)) {
-  const auto count = std::count_if(
-      grasps.grasps.begin(), grasps.grasps.end(),
-      [&](const std::shared_ptr<LuaGrasp>& grasp) { return feasible(grasp->grasp()); });
-  return static_cast<double>(count) / std::max(1.0, static_cast<double>(grasps.grasps.size()));
-}
-
-bool IsFeasible(const CompletedGrasp& grasp) { return grasp.feasible(); }
-bool IsRawFeasible(const CompletedGrasp& grasp) { return grasp.raw.feasible(); }
-
-// Whether a is the better of two feasible grasps: it lifts the object, then by its forces' room.
-bool IsBetter(const LuaGrasp& a, const LuaGrasp& b) {
-  if (a.lift->held != b.lift->held) return a.lift->held;
-  return a.grasp().result.wrench->margin > b.grasp().result.wrench->margin;
-}
-
 // All grasps of a trajectory.
 
 Pushed GraspsAll(lua_State* L, LuaGrasps& grasps) {
@@ -37,17 +18,10 @@ Pushed GraspsAll(lua_State* L, LuaGrasps& grasps) {
 }
 
 Pushed GraspsBest(lua_State* L, LuaGrasps& grasps) {
-  const LuaGrasp* best = nullptr;
-  std::shared_ptr<LuaGrasp> found;
-  for (const auto& grasp : grasps.grasps) {
-    if (!grasp->grasp().feasible() || (best != nullptr && !IsBetter(*grasp, *best))) continue;
-    found = grasp;
-    best = found.get();
-  }
-  if (found) {
-    PushObject(L, found);
-  } else {
+  if (grasps.all->feasible.empty()) {
     lua_pushnil(L);
+  } else {
+    PushObject(L, grasps.grasps[static_cast<std::size_t>(grasps.all->feasible.front())]);
   }
   return {1};
 }
@@ -62,13 +36,9 @@ Pushed GraspsItem(lua_State* L, LuaGrasps& grasps, int number) {
 }
 
 int GraspsCount(LuaGrasps& grasps) { return static_cast<int>(grasps.grasps.size()); }
-int GraspsFeasible(LuaGrasps& grasps) {
-  return static_cast<int>(
-      std::count_if(grasps.grasps.begin(), grasps.grasps.end(),
-                    [](const auto& grasp) { return grasp->grasp().feasible(); }));
-}
-double GraspsSuccess(LuaGrasps& grasps) { return Share(grasps, IsFeasible); }
-double GraspsRawSuccess(LuaGrasps& grasps) { return Share(grasps, IsRawFeasible); }
+int GraspsFeasible(LuaGrasps& grasps) { return static_cast<int>(grasps.all->feasible.size()); }
+double GraspsSuccess(LuaGrasps& grasps) { return grasps.all->r_suc(); }
+double GraspsRawSuccess(LuaGrasps& grasps) { return grasps.all->r_suc_raw(); }
 
 int GraspsToString(lua_State* L) {
   const auto grasps = FindObject<LuaGrasps>(L, 1);
@@ -118,17 +88,17 @@ Pushed GraspIk(lua_State* L, LuaGrasp& grasp) {
   return {1};
 }
 Pushed GraspLift(lua_State* L, LuaGrasp& grasp) {
-  if (!grasp.lift) {
+  if (!grasp.lift()) {
     lua_pushnil(L);
     return {1};
   }
   RecordWriter(L, kLift)
-      .Set("held", grasp.lift->held)
-      .Set("height", grasp.lift->height)
-      .Set("shift", grasp.lift->shift)
-      .Set("turn_deg", grasp.lift->turn_deg)
-      .Set("slip_mm", 1e3 * grasp.lift->slip)
-      .Set("direction_W", grasp.lift->direction_W);
+      .Set("held", grasp.lift()->held)
+      .Set("height", grasp.lift()->height)
+      .Set("shift", grasp.lift()->shift)
+      .Set("turn_deg", grasp.lift()->turn_deg)
+      .Set("slip_mm", 1e3 * grasp.lift()->slip)
+      .Set("direction_W", grasp.lift()->direction_W);
   return {1};
 }
 
@@ -152,31 +122,19 @@ Pushed TrajectoryGrasps(lua_State* L, const std::shared_ptr<LuaTrajectory>& traj
   // What the generator is asked to complete depends on the settings.
   const ReleaseResult release = planning.record.Time(
       "grasp", [&] { return planner.Release(trajectory->graph->state, trajectory->certificate); });
-  const int count = release.conditions.empty() ? 0 : config.grasp_samples;
-  auto all = std::make_shared<std::vector<CompletedGrasp>>(static_cast<std::size_t>(count));
-  auto grasps = std::make_shared<LuaGrasps>();
-  grasps->trajectory = trajectory;
-  planning.record.Time("grasp", [&] {
-    planner.pool().ParallelFor(count, [&](int sample, int) {
-      ThrowIfInterrupted();
-      (*all)[static_cast<std::size_t>(sample)] =
-          planner.CompleteGrasp(trajectory->certificate, release, trajectory->path_rank(), sample);
-    });
-    for (int sample = 0; sample < count; ++sample) {
-      ThrowIfInterrupted();
-      auto grasp = std::make_shared<LuaGrasp>(
-          LuaGrasp{trajectory, config, all, sample, std::nullopt, nullptr});
-      if (grasp->grasp().feasible()) {
-        grasp->lift = planner.Lift(trajectory->certificate, grasp->grasp().result);
-      }
-      grasps->grasps.push_back(std::move(grasp));
-    }
+  const auto all = planning.record.Time("grasp", [&] {
+    return std::make_shared<const GraspSet>(
+        planner.CompleteGrasps(trajectory->certificate, release, trajectory->path_rank()));
   });
-  for (const auto& grasp : grasps->grasps) {
-    grasp->step = planning.Record(config, [&](PlanRecord& record) {
-      record.AddGrasp(trajectory->certificate, trajectory->path_rank(), grasp->sample,
-                      grasp->grasp());
+  auto grasps = std::make_shared<LuaGrasps>(LuaGrasps{all, {}});
+  const int count = static_cast<int>(all->grasps.size());
+  for (int sample = 0; sample < count; ++sample) {
+    auto step = planning.Record(config, [&](PlanRecord& record) {
+      record.AddGrasp(trajectory->certificate, trajectory->path_rank(), sample,
+                      all->grasps[static_cast<std::size_t>(sample)]);
     });
+    grasps->grasps.push_back(
+        std::make_shared<LuaGrasp>(LuaGrasp{trajectory, config, all, sample, std::move(step)}));
   }
   planning.record.ChoosePath(*trajectory->mppi, trajectory->certificate, release, *all);
   planning.record.Publish();

@@ -52,7 +52,7 @@ void FinishMotion(lua_State* L, LuaMotion& motion) {
   const LuaTrajectory& trajectory = *grasp.trajectory;
   PlanRecord& record = planning.record;
   record.ChoosePath(*trajectory.mppi, trajectory.certificate, trajectory.release, *grasp.all);
-  record.ChooseGrasp(trajectory.certificate, grasp.grasp(), *grasp.lift);
+  record.ChooseGrasp(trajectory.certificate, grasp.grasp(), *grasp.lift());
   record.ChooseMotion(*motion.motion, next);
   record.Publish();
   auto step = motion.past.back()->step;
@@ -250,7 +250,7 @@ Pushed GraspMotion(lua_State* L, const std::shared_ptr<LuaGrasp>& grasp,
   const LuaTrajectory& trajectory = *grasp->trajectory;
   const Planner planner = trajectory.planning->planner.WithConfig(changed->config);
   auto motion = std::make_shared<const HandMotion>(
-      planner.MakeMotion(trajectory.certificate, grasp->grasp().result, grasp->lift->direction_W,
+      planner.MakeMotion(trajectory.certificate, grasp->grasp().result, grasp->lift()->direction_W,
                          changed->config.motion));
   Moments<MotionState> past = {std::make_shared<const Moment<MotionState>>(
       Moment<MotionState>{motion->Start(), grasp->step})};

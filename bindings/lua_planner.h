@@ -112,16 +112,18 @@ struct LuaTrajectory {
 struct LuaGrasp {
   std::shared_ptr<const LuaTrajectory> trajectory;
   PlannerConfig config;
-  std::shared_ptr<const std::vector<CompletedGrasp>> all;
+  std::shared_ptr<const GraspSet> all;
   int sample = 0;
-  std::optional<LiftResult> lift;  // of a feasible one
   std::shared_ptr<const JournalStep> step;
 
-  const CompletedGrasp& grasp() const { return (*all)[static_cast<std::size_t>(sample)]; }
+  const CompletedGrasp& grasp() const { return all->grasps[static_cast<std::size_t>(sample)]; }
+  const std::optional<LiftResult>& lift() const {
+    return all->lifts[static_cast<std::size_t>(sample)];
+  }
 };
 
 struct LuaGrasps {
-  std::shared_ptr<const LuaTrajectory> trajectory;
+  std::shared_ptr<const GraspSet> all;
   std::vector<std::shared_ptr<LuaGrasp>> grasps;  // by sample
 };
 

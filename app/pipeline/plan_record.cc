@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/core/check.h"
 #include "app/hand/hand_shapes.h"
@@ -341,24 +340,18 @@ void PlanRecord::AddFrame(const HandMotion& motion, const MotionState& state, in
 }
 
 void PlanRecord::ChoosePath(const Mppi& mppi, const Certificate& certificate,
-                            const ReleaseResult& release,
-                            const std::vector<CompletedGrasp>& grasps) {
+                            const ReleaseResult& release, const GraspSet& grasps) {
   outcome_.rollout.clear();
   for (const TraceRow& row : certificate.trace) outcome_.rollout.push_back(row.state);
   Json& summary = outcome_.summary;
   summary["contacts"] = StagesJson(mppi, certificate.full.plan);
   summary["switches"] = CountSwitches(certificate.full.plan);
   summary["physics"]["max_penetration_mm"] = 1e3 * certificate.full.max_penetration;
-  const auto share = [&](auto feasible) {
-    return static_cast<double>(std::count_if(grasps.begin(), grasps.end(), feasible)) /
-           static_cast<double>(std::max<std::size_t>(1, grasps.size()));
-  };
-  if (grasps.empty()) return;
-  const double r_suc = share([](const CompletedGrasp& grasp) { return grasp.feasible(); });
-  summary["r_suc"] = r_suc;
-  summary["r_suc_raw"] = share([](const CompletedGrasp& grasp) { return grasp.raw.feasible(); });
-  summary["grasps"]["tried"] = grasps.size();
-  summary["grasps"]["feasible"] = std::lround(r_suc * static_cast<double>(grasps.size()));
+  if (grasps.grasps.empty()) return;
+  summary["r_suc"] = grasps.r_suc();
+  summary["r_suc_raw"] = grasps.r_suc_raw();
+  summary["grasps"]["tried"] = grasps.grasps.size();
+  summary["grasps"]["feasible"] = grasps.feasible.size();
   summary["grasps"]["kept"] =
       FingerNames(release.stays ? std::vector<GraspContact>{} : release.pressing);
 }

@@ -45,7 +45,7 @@ class PlanRecord {
 
   /// What the summary says of the chosen path: its trajectory, and its grasps in all.
   void ChoosePath(const Mppi& mppi, const Certificate& certificate, const ReleaseResult& release,
-                  const std::vector<CompletedGrasp>& grasps);
+                  const GraspSet& grasps);
   void ChooseGrasp(const Certificate& certificate, const CompletedGrasp& grasp,
                    const LiftResult& lift);
   void ChooseMotion(const HandMotion& motion, const MotionState& state);

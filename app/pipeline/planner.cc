@@ -1,9 +1,10 @@
 #include "app/pipeline/planner.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 
 namespace pregrasp {
 namespace {
@@ -56,6 +57,17 @@ void PlannerConfig::Validate() const {
   completion.Validate();
   lift.Validate();
   motion.Validate();
+}
+
+double GraspSet::r_suc() const {
+  return grasps.empty() ? 0.0
+                        : static_cast<double>(feasible.size()) / static_cast<double>(grasps.size());
+}
+
+double GraspSet::r_suc_raw() const {
+  const auto raw = std::count_if(grasps.begin(), grasps.end(),
+                                 [](const CompletedGrasp& grasp) { return grasp.raw.feasible(); });
+  return grasps.empty() ? 0.0 : static_cast<double>(raw) / static_cast<double>(grasps.size());
 }
 
 Planner::Planner(std::shared_ptr<const World> world, WorldState start, const PlannerConfig& config,
@@ -133,11 +145,8 @@ Certificate Planner::Certify(const Mppi& mppi, const MppiState& state) const {
 ReleaseResult Planner::Release(const ContactGraph& graph, const Certificate& certificate) const {
   ReleaseResult result;
   const WorldState& end = certificate.full.end;
-  const pregrasp::Release release = SimulateRelease(*world_, end);
+  static_cast<Released&>(result) = SimulateRelease(*world_, end);
   result.pressing = PressingContacts(end);
-  result.shift = release.shift;
-  result.turn_deg = release.turn_deg;
-  result.stays = release.stays;
 
   Placement fixed;
   for (const GraspContact& contact : result.pressing) {
@@ -150,12 +159,37 @@ ReleaseResult Planner::Release(const ContactGraph& graph, const Certificate& cer
   return result;
 }
 
-CompletedGrasp Planner::CompleteGrasp(const Certificate& certificate, const ReleaseResult& release,
-                                      int path_rank, int sample) const {
+GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseResult& release,
+                                 int path_rank) const {
+  GraspSet set;
+  if (release.conditions.empty()) return set;
   const std::vector<RigidTransform> X_WB = world_->GetPoses(certificate.full.end);
   const ObjectState seen = MakeObjectState(scorer_->cloud(), X_WB, *environment_, scene().gravity);
   const EncodedState encoded = generator_->Encode(*generator_structure_, seen);
-  PREGRASP_CHECK(!release.conditions.empty());
+  const int count = config_.grasp_samples;
+  set.grasps.resize(count);
+  set.lifts.resize(count);
+  pool_.ParallelFor(count, [&](int sample, int) {
+    ThrowIfInterrupted();
+    set.grasps[sample] = CompleteGrasp(encoded, X_WB, release, path_rank, sample);
+  });
+  for (int sample = 0; sample < count; ++sample) {
+    ThrowIfInterrupted();
+    if (!set.grasps[sample].feasible()) continue;
+    set.lifts[sample] = Lift(certificate, set.grasps[sample].result);
+    set.feasible.push_back(sample);
+  }
+  std::stable_sort(set.feasible.begin(), set.feasible.end(), [&](int a, int b) {
+    if (set.lifts[a]->held != set.lifts[b]->held) return set.lifts[a]->held;
+    return set.grasps[a].result.wrench->margin > set.grasps[b].result.wrench->margin;
+  });
+  return set;
+}
+
+CompletedGrasp Planner::CompleteGrasp(const EncodedState& encoded,
+                                      const std::vector<RigidTransform>& X_WB,
+                                      const ReleaseResult& release, int path_rank,
+                                      int sample) const {
   const PlanningContacts conditions = MakePlanningContacts(
       release.conditions[sample % release.conditions.size()], &X_WB, *environment_);
   const Rng latent(seed_, RngStream::kGrasp, static_cast<std::uint32_t>(path_rank),

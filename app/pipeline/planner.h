@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "app/geometry/contact_mesh.h"
@@ -35,9 +36,7 @@ struct PlannerConfig {
 };
 
 /// What is left of a certified trajectory when the fingers let go, and so which of them must stay.
-struct ReleaseResult {
-  bool stays = false;  ///< under 1 cm and 5 degrees within 1 s (design, section 4)
-  double shift = 0.0, turn_deg = 0.0;
+struct ReleaseResult : Released {
   /// The contacts that press at the end of the trajectory. If the object does not stay without
   /// them, every grasp keeps them where they are.
   std::vector<GraspContact> pressing;
@@ -45,6 +44,19 @@ struct ReleaseResult {
   /// with the best learned score where the object is now. If the object does not stay, all of them
   /// hold `pressing`. Empty if there is no place for a fingertip.
   std::vector<Placement> conditions;
+};
+
+/// The generated grasps of a certified trajectory, tested; those that are feasible, lifted.
+struct GraspSet {
+  std::vector<CompletedGrasp> grasps;            ///< by sample
+  std::vector<std::optional<LiftResult>> lifts;  ///< by sample
+  /// Samples of the feasible ones, the most promising first: those that lift the object, then those
+  /// with more room in their forces.
+  std::vector<int> feasible;
+
+  /// Share that is feasible, with refinement and without; 0 of none.
+  double r_suc() const;
+  double r_suc_raw() const;
 };
 
 /// The stages of one scene bound together: builds what they share once, and hands each stage its
@@ -87,12 +99,11 @@ class Planner {
   /// @param graph  whose mesh says where fingers may touch.
   ReleaseResult Release(const ContactGraph& graph, const Certificate& certificate) const;
 
-  /// The generated grasp number `sample` (from 0) on a certified trajectory, tested. Safe to call
-  /// from several threads.
-  /// @param release    with at least one condition.
-  /// @param path_rank  keys the latent samples.
-  CompletedGrasp CompleteGrasp(const Certificate& certificate, const ReleaseResult& release,
-                               int path_rank, int sample) const;
+  /// The configured number of generated grasps on a certified trajectory; none if there is no
+  /// condition to complete.
+  /// @param path_rank  keys the latent samples. @throws Interrupted.
+  GraspSet CompleteGrasps(const Certificate& certificate, const ReleaseResult& release,
+                          int path_rank) const;
 
   LiftResult Lift(const Certificate& certificate, const GraspResult& grasp) const;
 
@@ -101,6 +112,9 @@ class Planner {
                         const Vector3& direction_W, const MotionConfig& config) const;
 
  private:
+  CompletedGrasp CompleteGrasp(const EncodedState& encoded, const std::vector<RigidTransform>& X_WB,
+                               const ReleaseResult& release, int path_rank, int sample) const;
+
   std::shared_ptr<const World> world_;
   WorldState start_;
   PlannerConfig config_;

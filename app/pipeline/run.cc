@@ -21,9 +21,7 @@ struct PathAttempt {
   MppiState state;
   Certificate certificate;
   ReleaseResult release;
-  std::vector<CompletedGrasp> grasps;
-  std::vector<int> feasible;  // samples, the most promising first
-  std::map<int, LiftResult> lifts;
+  GraspSet grasps;
   bool moves = false;  // a hand motion without a failed frame was found
   int frames_failed = 0;
 };
@@ -45,7 +43,7 @@ class Runner {
       result.reasons.push_back(Explain(attempt));
       const bool success = attempt.moves && result.status != RunStatus::kOk;
       if (success) result.status = RunStatus::kOk;
-      if (!attempt.feasible.empty() && result.status == RunStatus::kNoFeasibleGrasp) {
+      if (!attempt.grasps.feasible.empty() && result.status == RunStatus::kNoFeasibleGrasp) {
         result.status = RunStatus::kMotionFailed;
       }
       if (success) record_.SetNumPaths(i + 1);
@@ -93,8 +91,8 @@ class Runner {
     record_.AddCertificate(*attempt.mppi, attempt.certificate, attempt.release);
     if (!attempt.certificate.certified) return attempt;
     CompleteGrasps(index, attempt);
-    if (!succeeded_ && attempt.feasible.size() >= best_feasible_) {
-      best_feasible_ = attempt.feasible.size();
+    if (!succeeded_ && attempt.grasps.feasible.size() >= best_feasible_) {
+      best_feasible_ = attempt.grasps.feasible.size();
       record_.ChoosePath(*attempt.mppi, attempt.certificate, attempt.release, attempt.grasps);
     }
     MoveHand(index, attempt);
@@ -114,40 +112,25 @@ class Runner {
   }
 
   void CompleteGrasps(int index, PathAttempt& attempt) {
-    if (attempt.release.conditions.empty()) return;
     const int count = planner_.config().grasp_samples;
     Report(fmt::format("path {} of {}, grasps", index + 1, config_.paths), 0, count);
-    attempt.grasps.resize(count);
     record_.Time("grasp", [&] {
-      planner_.pool().ParallelFor(count, [&](int sample, int) {
-        ThrowIfInterrupted();
-        attempt.grasps[sample] =
-            planner_.CompleteGrasp(attempt.certificate, attempt.release, attempt.rank, sample);
-      });
-      for (int sample = 0; sample < count; ++sample) {
-        if (!attempt.grasps[sample].feasible()) continue;
-        attempt.feasible.push_back(sample);
-        attempt.lifts[sample] = planner_.Lift(attempt.certificate, attempt.grasps[sample].result);
-      }
+      attempt.grasps = planner_.CompleteGrasps(attempt.certificate, attempt.release, attempt.rank);
     });
-    for (int sample = 0; sample < count; ++sample) {
-      record_.AddGrasp(attempt.certificate, attempt.rank, sample, attempt.grasps[sample]);
+    for (std::size_t sample = 0; sample < attempt.grasps.grasps.size(); ++sample) {
+      record_.AddGrasp(attempt.certificate, attempt.rank, static_cast<int>(sample),
+                       attempt.grasps.grasps[sample]);
     }
-    // Those that lift the object first, then those with more room in their forces.
-    std::stable_sort(attempt.feasible.begin(), attempt.feasible.end(), [&](int a, int b) {
-      if (attempt.lifts[a].held != attempt.lifts[b].held) return attempt.lifts[a].held;
-      return attempt.grasps[a].result.wrench->margin > attempt.grasps[b].result.wrench->margin;
-    });
   }
 
   // Tries the first feasible grasps in turn; the first whose motion has no failed frame is it.
   void MoveHand(int index, PathAttempt& attempt) {
-    const int count = std::min(config_.motions, static_cast<int>(attempt.feasible.size()));
+    const int count = std::min(config_.motions, static_cast<int>(attempt.grasps.feasible.size()));
     for (int i = 0; i < count && !attempt.moves; ++i) {
       Report(fmt::format("path {} of {}, hand motion", index + 1, config_.paths), i, count);
-      const int sample = attempt.feasible[i];
-      const CompletedGrasp& grasp = attempt.grasps[sample];
-      const LiftResult& lift = attempt.lifts.at(sample);
+      const int sample = attempt.grasps.feasible[i];
+      const CompletedGrasp& grasp = attempt.grasps.grasps[sample];
+      const LiftResult& lift = *attempt.grasps.lifts[sample];
       const HandMotion motion = planner_.MakeMotion(attempt.certificate, grasp.result,
                                                     lift.direction_W, planner_.config().motion);
       MotionState state = motion.Start();
@@ -193,15 +176,16 @@ class Runner {
       }
       return head + "not certified: " + reasons;
     }
-    if (attempt.grasps.empty()) {
+    if (attempt.grasps.grasps.empty()) {
       return head + "certified, but no fingertip can be anywhere on the object";
     }
-    if (attempt.feasible.empty()) {
+    if (attempt.grasps.feasible.empty()) {
       return head + "certified, but no grasp is feasible, most often because of " +
-             CommonReason(attempt.grasps);
+             CommonReason(attempt.grasps.grasps);
     }
     const std::string share =
-        fmt::format("{} of {} grasps are feasible", attempt.feasible.size(), attempt.grasps.size());
+        fmt::format("{} of {} grasps are feasible", attempt.grasps.feasible.size(),
+                    attempt.grasps.grasps.size());
     if (!attempt.moves) {
       return head + share +
              fmt::format(", but the hand motion fails in {} frames", attempt.frames_failed);

@@ -197,7 +197,7 @@ PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environm
   return runner.Finish();
 }
 
-Release SimulateRelease(const World& world, WorldState state) {
+Released SimulateRelease(const World& world, WorldState state) {
   constexpr double kSeconds = 1.0;
   constexpr double kMaxShift = 0.01;  // [m]
   constexpr double kMaxTurnDeg = 5.0;
@@ -206,7 +206,7 @@ Release SimulateRelease(const World& world, WorldState state) {
   const int steps = static_cast<int>(std::lround(kSeconds / world.config().dt));
   for (int i = 0; i < steps; ++i) world.Step(state);
   const RigidTransform X_WO_end = state.bodies.front().X_WB();
-  Release release;
+  Released release;
   release.shift = (X_WO_end.translation() - X_WO.translation()).norm();
   release.turn_deg = RadToDeg(RotationAngle(X_WO.linear(), X_WO_end.linear()));
   release.stays = release.shift < kMaxShift && release.turn_deg < kMaxTurnDeg;

@@ -33,13 +33,13 @@ struct PlanOutcome {
 inline constexpr double kTipOverlapAllowed = 0.001;
 
 /// What happens to the object when all fingers let go.
-struct Release {
+struct Released {
   double shift = 0.0;     ///< of its origin in 1 s [m]
   double turn_deg = 0.0;  ///< [degrees]
   /// Under 1 cm and 5 degrees (design, section 4): no finger has to keep pressing.
   bool stays = false;
 };
-Release SimulateRelease(const World& world, WorldState state);
+Released SimulateRelease(const World& world, WorldState state);
 
 /// Which stepper runs.
 enum class Stepper { kKernel, kSimbody };

@@ -155,8 +155,10 @@ TEST_F(RunTest, AMotionlessPlanFails) {
   EXPECT_LT((X_WO.translation() - session.start().bodies[0].p_WB).norm(), 1e-3);
   const ReleaseResult release = planner.Release(graph, certificate);
   EXPECT_TRUE(release.stays);
+  const GraspSet grasps = planner.CompleteGrasps(certificate, release, 1);
+  ASSERT_EQ(static_cast<int>(grasps.grasps.size()), config_.grasp_samples);
   for (int sample = 0; sample < config_.grasp_samples; ++sample) {
-    EXPECT_FALSE(planner.CompleteGrasp(certificate, release, 1, sample).feasible()) << sample;
+    EXPECT_FALSE(grasps.grasps[sample].feasible()) << sample;
   }
   GraspSearchConfig search;
   search.max_sets = 20000;
