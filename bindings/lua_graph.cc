@@ -95,7 +95,7 @@ bool GraphPruneStep(lua_State* L, LuaGraph& graph, const std::optional<int>& nod
     throw InputError("", "nodes", "a whole number from 1", std::to_string(*nodes));
   }
   ContactGraph next = graph.graph();
-  if (!next.PruneNodes(nodes.value_or(std::numeric_limits<int>::max()))) return false;
+  if (!next.PruneStep(nodes.value_or(std::numeric_limits<int>::max()))) return false;
   Advance(L, graph, std::move(next), &PlanRecord::AddPruning);
   return true;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "app/core/check.h"
@@ -210,12 +209,12 @@ void ContactGraph::SetTopPercent(double top_percent) {
   config_ = config;
 }
 
-bool ContactGraph::PruneNodes(int count) {
-  PREGRASP_CHECK(stage_ != GraphStage::kMeshed && count >= 1, count);
+bool ContactGraph::PruneStep(int nodes) {
+  PREGRASP_CHECK(stage_ != GraphStage::kMeshed && nodes >= 1, nodes);
   if (stage_ == GraphStage::kConnected) return false;
   const bool connect = stage_ == GraphStage::kPrunedFree;
   const int total = connect ? static_cast<int>(kept_.size()) : NumKeptEach();
-  const int end = std::min(total, num_done_ + std::min(count, total));
+  const int end = std::min(total, num_done_ + std::min(nodes, total));
   if (connect) neighbors_.resize(nodes_.size());
   for (int i = num_done_; i < end; ++i) {
     switch (stage_) {
@@ -252,28 +251,12 @@ void ContactGraph::ConnectNode(int a) {
   }
 }
 
-void ContactGraph::PruneByContext() {
-  PREGRASP_CHECK(stage_ == GraphStage::kScored, static_cast<int>(stage_));
-  PruneNodes(std::numeric_limits<int>::max());
-}
-
-void ContactGraph::PruneByFree() {
-  PREGRASP_CHECK(stage_ == GraphStage::kPrunedContext, static_cast<int>(stage_));
-  PruneNodes(std::numeric_limits<int>::max());
-}
-
-void ContactGraph::Connect() {
-  PREGRASP_CHECK(stage_ == GraphStage::kPrunedFree, static_cast<int>(stage_));
-  PruneNodes(std::numeric_limits<int>::max());
-}
-
 void ContactGraph::Prune() {
   if (stage_ == GraphStage::kMeshed) {
     throw InputError("", "prune", "a graph that has been scored", "one without scores");
   }
-  if (stage_ == GraphStage::kScored) PruneByContext();
-  if (stage_ == GraphStage::kPrunedContext) PruneByFree();
-  if (stage_ == GraphStage::kPrunedFree) Connect();
+  while (PruneStep()) {
+  }
 }
 
 const std::vector<int>& ContactGraph::neighbors(int id) const {

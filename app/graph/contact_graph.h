@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -70,22 +71,18 @@ class ContactGraph {
 
   /// Sets the paper's M anew. @throws InputError once pruning has begun.
   void SetTopPercent(double top_percent);
-  /// Keeps the top M percent by s_c as V_c; needs kScored.
-  void PruneByContext();
-  /// Adds the top M percent by s_n; needs kPrunedContext.
-  void PruneByFree();
-  /// Connects kept nodes that share a triangle, and each with itself; needs kPrunedFree.
-  void Connect();
-  /// The first `count` nodes, at least 1, that are still to do of whichever of these three steps is
-  /// next; false when all are done. Needs scores.
-  bool PruneNodes(int count);
-  /// The three steps above that are still to do. @throws InputError before Score.
+  /// The next of three steps: keeps the top M percent by s_c as V_c; adds the top M percent by s_n;
+  /// connects kept nodes that share a triangle, and each with itself. False when all are done.
+  /// Needs scores.
+  /// @param nodes  at most so many of the step's nodes, from 1; it goes on with the next call.
+  bool PruneStep(int nodes = std::numeric_limits<int>::max());
+  /// The steps that are still to do. @throws InputError before Score.
   void Prune();
 
   GraphStage stage() const { return stage_; }
-  /// Nodes done of the pruning step that PruneNodes has begun; 0 between steps.
+  /// Nodes done of the pruning step that is under way; 0 between steps.
   int num_done() const { return num_done_; }
-  /// Calls so far of the functions above that prune.
+  /// Calls of PruneStep that did something.
   int num_prune_steps() const { return num_prune_steps_; }
   const TriangleMesh& mesh() const { return mesh_; }
   const ContactGraphConfig& config() const { return config_; }

@@ -70,12 +70,7 @@ class Runner {
     record_.AddMesh(*graph_);
     record_.Time("graph", [&] { planner_.ScoreGraph(*graph_); });
     record_.AddScores(*graph_);
-    graph_->PruneByContext();
-    record_.AddPruning(*graph_);
-    graph_->PruneByFree();
-    record_.AddPruning(*graph_);
-    graph_->Connect();
-    record_.AddPruning(*graph_);
+    while (graph_->PruneStep()) record_.AddPruning(*graph_);
     Report("contact graph", 1, 1);
   }
 

@@ -97,10 +97,10 @@ TEST(ContactGraphTest, PruningStepByStepEqualsPruningAtOnce) {
   ContactGraph once = MakeScored(10.0);
   ContactGraph steps = once;
   once.Prune();
-  steps.PruneByContext();
+  steps.PruneStep();
   const ContactGraph earlier = steps;
-  steps.PruneByFree();
-  steps.Connect();
+  steps.PruneStep();
+  steps.PruneStep();
   EXPECT_EQ(once.kept(), steps.kept());
   EXPECT_EQ(once.num_edges(), steps.num_edges());
   EXPECT_EQ(earlier.stage(), GraphStage::kPrunedContext);
