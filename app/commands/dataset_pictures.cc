@@ -12,9 +12,9 @@
 #include "app/commands/progress.h"
 #include "app/core/error.h"
 #include "app/geometry/tessellate.h"
-#include "app/hand/hand_shapes.h"
 #include "app/pipeline/camera.h"
 #include "app/training/dataset_run.h"
+#include "render/hand_bodies.h"
 #include "render/palette.h"
 
 namespace pregrasp {
@@ -30,10 +30,6 @@ struct PictureOptions {
   fs::path grasps, generator, out;
   int count = 48;
 };
-
-MatrixX3 Placed(const MatrixX3& P_B, const RigidTransform& X_WB) {
-  return (P_B * X_WB.linear().transpose()).rowwise() + X_WB.translation().transpose();
-}
 
 std::string Shares(const LabelRecord& label) {
   std::string text;
@@ -56,18 +52,11 @@ RenderScene Compose(const SceneLabeler& labeler, const std::string& title, const
     body.X_WB = X_WB[b];
     picture.bodies.push_back(WithLook(body, b == 0 ? ObjectColor() : TableColor()));
   }
-  const TriangleMesh object_W{Placed(picture.bodies[0].mesh->V, X_WB[0]),
+  const TriangleMesh object_W{TransformPoints(X_WB[0], picture.bodies[0].mesh->V),
                               picture.bodies[0].mesh->F};
   MatrixX3 focus_W = FocusAround(object_W.V, 0.15, 0.04);
   if (example) {
-    const auto X_WL = CalcLinkPoses(ShadowHand(), example->hand);
-    for (const HandShape& shape : ShadowHandShapes()) {
-      RenderBody body;
-      body.mesh = shape.mesh;
-      body.X_WB = X_WL[shape.link];
-      body.color = {shape.rgba[0], shape.rgba[1], shape.rgba[2], shape.rgba[3]};
-      picture.bodies.push_back(body);
-    }
+    AddHand(picture, example->hand);
     focus_W = FocusAround(focus_W, 0.25, 0.0);
     for (const GraspContact& contact : example->contacts) {
       picture.points.push_back({X_WB[0] * contact.p_OC, 0.003F, FingerColor(contact.finger)});

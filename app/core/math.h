@@ -36,6 +36,11 @@ inline RigidTransform MakeTransform(const Quaternion& q_AB, const Vector3& p_AB)
   return MakeTransform(q_AB.toRotationMatrix(), p_AB);
 }
 
+/// Points given in B, one a row, in A.
+inline MatrixX3 TransformPoints(const RigidTransform& X_AB, const MatrixX3& P_B) {
+  return (P_B * X_AB.linear().transpose()).rowwise() + X_AB.translation().transpose();
+}
+
 /// Rotation from roll, pitch, yaw about the fixed x, y and z axes [rad]: R = Rz(yaw) Ry(pitch)
 /// Rx(roll).
 inline Matrix3 RotationFromRpy(const Vector3& rpy) {

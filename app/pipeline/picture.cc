@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "app/geometry/tessellate.h"
-#include "app/hand/hand_shapes.h"
 #include "app/pipeline/camera.h"
 #include "app/pipeline/finger_stub.h"
 #include "app/pipeline/forces.h"
 #include "app/pipeline/motion_measure.h"
+#include "render/hand_bodies.h"
 #include "render/palette.h"
 
 namespace pregrasp {
@@ -21,30 +21,9 @@ constexpr double kHeadroom = 0.07;    // [m], above it
 constexpr double kGhostAfter = 1e-3;  // [m]
 constexpr double kGhostTurn = 0.01;   // [rad]
 
-MatrixX3 Placed(const MatrixX3& P_B, const RigidTransform& X_WB) {
-  return (P_B * X_WB.linear().transpose()).rowwise() + X_WB.translation().transpose();
-}
-
 void Append(MatrixX3& points, const MatrixX3& more) {
   points.conservativeResize(points.rows() + more.rows(), 3);
   points.bottomRows(more.rows()) = more;
-}
-
-void AddHand(RenderScene& scene, const HandConfiguration& hand,
-             const std::array<bool, kNumFingers>& touching) {
-  const auto X_WL = CalcLinkPoses(ShadowHand(), hand);
-  for (const HandShape& shape : ShadowHandShapes()) {
-    const auto& [r, g, b, a] = shape.rgba;
-    Rgba color{r, g, b, a};
-    for (int f = 0; f < kNumFingers; ++f) {
-      const Finger finger = static_cast<Finger>(f);
-      if (touching[f] && shape.link == DistalLink(finger)) color = FingerColor(finger);
-    }
-    RenderBody body;
-    body.mesh = shape.mesh;
-    body.X_WB = X_WL[shape.link];
-    scene.bodies.push_back(WithLook(body, color, 0.45F));
-  }
 }
 
 }  // namespace
@@ -77,7 +56,7 @@ PictureMaker::PictureMaker(std::shared_ptr<const World> world) : impl_(std::make
     impl_->meshes.push_back(std::make_shared<const TriangleMesh>(Tessellate(body.shape)));
   }
   TriangleMesh object_W = *impl_->meshes[0];
-  object_W.V = Placed(object_W.V, scene.object().X_WB);
+  object_W.V = TransformPoints(scene.object().X_WB, object_W.V);
   impl_->view_W = ChooseViewDirection(object_W, EnvironmentDistance(scene));
   impl_->start_focus_W = FocusAround(object_W.V, kFocusShare, kHeadroom);
   // The forces of a push are a few times the weight, and end at the cap.
@@ -94,9 +73,9 @@ RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const
   const auto& fixed = config.camera ? config.camera : world->scene().camera;
   if (fixed) return {fixed->p_WCam, fixed->p_WTarget, fixed->fov_deg};
   const double aspect = static_cast<double>(config.width) / config.height;
-  MatrixX3 seen_W = Placed(meshes[0]->V, state.bodies[0].X_WB());
+  MatrixX3 seen_W = TransformPoints(state.bodies[0].X_WB(), meshes[0]->V);
   for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
-    Append(seen_W, Placed(meshes[0]->V, ghost.X_WO));
+    Append(seen_W, TransformPoints(ghost.X_WO, meshes[0]->V));
   }
   Append(seen_W, overlay.focus_W);
   const RenderCamera at_start = FrameCamera(start_focus_W, view_W, aspect);

@@ -9,6 +9,7 @@
 #include "app/geometry/tessellate.h"
 #include "app/hand/hand_shapes.h"
 #include "app/hand/ik.h"
+#include "render/hand_bodies.h"
 #include "render/renderer.h"
 
 namespace pregrasp {
@@ -94,16 +95,8 @@ std::vector<Pose> Poses() {
 RenderScene MakeScene(const Pose& pose, bool capsules) {
   // The hand stands upright, palm to the camera's side.
   const RigidTransform X_WH = MakeTransform(Matrix3::Identity(), Vector3(0.0, 0.0, 0.08));
-  const auto X_WL = CalcLinkPoses(ShadowHand(), {X_WH, pose.q});
   RenderScene scene;
-  for (const HandShape& shape : ShadowHandShapes()) {
-    RenderBody body;
-    body.mesh = shape.mesh;
-    body.X_WB = X_WL[shape.link];
-    body.color = {shape.rgba[0], shape.rgba[1], shape.rgba[2], shape.rgba[3]};
-    body.roughness = 0.45F;
-    scene.bodies.push_back(body);
-  }
+  AddHand(scene, {X_WH, pose.q});
   if (pose.object) {
     RenderBody body;
     body.mesh = pose.object;
@@ -112,6 +105,7 @@ RenderScene MakeScene(const Pose& pose, bool capsules) {
     scene.bodies.push_back(body);
   }
   if (capsules) {
+    const auto X_WL = CalcLinkPoses(ShadowHand(), {X_WH, pose.q});
     for (const HandCapsule& capsule : ShadowHand().capsules) {
       const Vector3 axis = capsule.p_LB - capsule.p_LA;
       RenderBody body;

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <array>
+
+#include "app/hand/hand_model.h"
+#include "render/render_scene.h"
+
+namespace pregrasp {
+
+/// Adds the hand at `hand` to a picture, as its URDF's visuals show it.
+/// @param touching  fingers whose last links get the finger's colour.
+void AddHand(RenderScene& scene, const HandConfiguration& hand,
+             const std::array<bool, kNumFingers>& touching = {});
+
+}  // namespace pregrasp
