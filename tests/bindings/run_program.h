@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/test_folder.h"
+
 namespace pregrasp {
 
 struct ProgramResult {
@@ -60,12 +62,8 @@ inline ProgramResult AwaitProgram(pid_t child, const std::filesystem::path& capt
 inline ProgramResult RunProgram(const std::vector<std::string>& arguments,
                                 const std::filesystem::path& directory,
                                 const std::string& input = "") {
-  std::string name = (std::filesystem::temp_directory_path() / "pregrasp_output_XXXXXX").string();
-  const std::filesystem::path captured = mkdtemp(name.data());
-  const ProgramResult result =
-      AwaitProgram(StartProgram(arguments, directory, captured, input), captured);
-  std::filesystem::remove_all(captured);
-  return result;
+  const TestFolder captured;
+  return AwaitProgram(StartProgram(arguments, directory, captured.path(), input), captured.path());
 }
 
 /// Every file below a folder, with its size: what a run must not change.

@@ -23,14 +23,11 @@ const std::string kScene = PREGRASP_SOURCE_DIR "/scenes/ruler.lua";
 class RunCommandTest : public testing::Test {
  protected:
   RunCommandTest() {
-    std::string name = (fs::temp_directory_path() / "pregrasp_command_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
     fs::create_directories(Weights());
     setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);  // for the program's verdicts
     WriteTensors(Weights() / "score.safetensors", MakeRandomScore(3));
     WriteTensors(Weights() / "generator.safetensors", MakeRandomGenerator(4));
   }
-  ~RunCommandTest() override { fs::remove_all(folder_); }
 
   fs::path Weights() const { return folder_ / "weights"; }
 
@@ -50,7 +47,8 @@ class RunCommandTest : public testing::Test {
     return arguments;
   }
 
-  fs::path folder_;
+  const TestFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(RunCommandTest, WithoutSuccessTheRunIsCompleteAndSaysWhy) {
@@ -113,8 +111,8 @@ TEST_F(RunCommandTest, CtrlCLeavesAValidShorterRun) {
 
 // The main job with the weights that ship.
 TEST(MainJobTest, TheRulerIsGrasped) {
-  std::string name = (fs::temp_directory_path() / "pregrasp_ruler_XXXXXX").string();
-  const fs::path folder = mkdtemp(name.data());
+  const TestFolder temporary;
+  const fs::path& folder = temporary.path();
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
   const ProgramResult result = RunProgram({"run", kScene, "--pictures", "none"}, folder);
   EXPECT_EQ(result.code, 0) << result.out << result.err;
@@ -124,12 +122,11 @@ TEST(MainJobTest, TheRulerIsGrasped) {
   EXPECT_EQ(run.summary["start_grasps"]["feasible"], 0);
   EXPECT_EQ(run.summary["motion"]["failed"], 0);
   EXPECT_TRUE(fs::exists(folder / "out" / "ruler" / "motion.csv"));
-  fs::remove_all(folder);
 }
 
 TEST(MainJobLongTest, FourSeedsOfFiveSucceed) {
-  std::string name = (fs::temp_directory_path() / "pregrasp_ruler_XXXXXX").string();
-  const fs::path folder = mkdtemp(name.data());
+  const TestFolder temporary;
+  const fs::path& folder = temporary.path();
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
   int succeeded = 0;
   for (const char* seed : {"1", "2", "3", "4", "5"}) {
@@ -137,18 +134,16 @@ TEST(MainJobLongTest, FourSeedsOfFiveSucceed) {
         RunProgram({"run", kScene, "--pictures", "none", "--seed", seed}, folder).code == 0;
   }
   EXPECT_GE(succeeded, 4);
-  fs::remove_all(folder);
 }
 
 TEST(DocsTest, TheStepByStepScriptRunsAsPrinted) {
-  std::string name = (fs::temp_directory_path() / "pregrasp_docs_XXXXXX").string();
-  const fs::path folder = mkdtemp(name.data());
+  const TestFolder temporary;
+  const fs::path& folder = temporary.path();
   const ProgramResult result = RunProgram(
       {"script", PREGRASP_SOURCE_DIR "/docs/step_by_step.lua", "--pictures", "none"}, folder);
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_NE(result.out.find("0 failed"), std::string::npos) << result.out;
   EXPECT_FALSE(VerifyManifest(folder / "out" / "step_by_step").has_value());
-  fs::remove_all(folder);
 }
 
 }  // namespace

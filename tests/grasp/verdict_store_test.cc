@@ -1,7 +1,6 @@
 #include "app/grasp/verdict_store.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <functional>
@@ -10,6 +9,7 @@
 #include <thread>
 
 #include "tests/grasp/grasp_scenes.h"
+#include "tests/test_folder.h"
 
 namespace pregrasp {
 namespace {
@@ -18,14 +18,8 @@ namespace fs = std::filesystem;
 
 class VerdictStoreTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "pregrasp_verdicts_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  const TestFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 const std::string kKey(64, 'a');

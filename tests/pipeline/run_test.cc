@@ -12,6 +12,7 @@
 #include "app/recording/manifest.h"
 #include "tests/networks/random_network.h"
 #include "tests/pipeline/fixture.h"
+#include "tests/test_folder.h"
 
 namespace pregrasp {
 namespace {
@@ -22,8 +23,6 @@ namespace fs = std::filesystem;
 class RunTest : public testing::Test {
  protected:
   RunTest() {
-    std::string name = (fs::temp_directory_path() / "pregrasp_run_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
     WriteTensors(folder_ / "score.safetensors", MakeRandomScore(3));
     WriteTensors(folder_ / "generator.safetensors", MakeRandomGenerator(4));
     start_.verdict = StartVerdict::kCertified;
@@ -36,10 +35,7 @@ class RunTest : public testing::Test {
     config_.completion.grasp.kinematics.ik.max_starts = 2;
     run_.paths = 2;
   }
-  ~RunTest() override {
-    ClearInterrupt();
-    fs::remove_all(folder_);
-  }
+  ~RunTest() override { ClearInterrupt(); }
 
   RunResult RunInto(const std::string& name, int threads,
                     const std::function<void(const RunProgress&)>& progress = {}) {
@@ -68,7 +64,8 @@ class RunTest : public testing::Test {
     return ids;
   }
 
-  fs::path folder_;
+  const TestFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   StartCertificate start_;
   PlannerConfig config_;
   RunConfig run_;

@@ -8,6 +8,7 @@
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "tests/pipeline/fixture.h"
+#include "tests/test_folder.h"
 
 namespace pregrasp {
 namespace {
@@ -16,12 +17,6 @@ namespace fs = std::filesystem;
 
 class SessionTest : public testing::Test {
  protected:
-  SessionTest() {
-    std::string name = (fs::temp_directory_path() / "pregrasp_session_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~SessionTest() override { fs::remove_all(folder_); }
-
   static void Pull(Session& session, const std::shared_ptr<Simulation>& sim) {
     session.Touch(sim, Finger::kIndex, {0.11, 0, 0.0015});
     session.Move(sim, Finger::kIndex, sim->state().fingers[1].p_WTarget - Vector3(0, 0, 0.012),
@@ -40,7 +35,8 @@ class SessionTest : public testing::Test {
     return static_cast<int>(std::count(std::istreambuf_iterator<char>(in), {}, '\n'));
   }
 
-  fs::path folder_;
+  const TestFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 using Strings = std::vector<std::string>;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include "app/core/rng.h"
 #include "app/recording/checked_file.h"
 #include "app/recording/run_directory.h"
+#include "tests/test_folder.h"
 
 namespace pregrasp {
 
@@ -19,21 +19,11 @@ inline std::filesystem::path FastTemporaryPlace() {
   return access("/dev/shm", W_OK) == 0 ? "/dev/shm" : std::filesystem::temp_directory_path();
 }
 
-/// A new folder that is removed with everything in it.
-class TemporaryFolder {
+/// A folder for one test's files, removed with it.
+class TemporaryFolder : public TestFolder {
  public:
-  explicit TemporaryFolder(const std::filesystem::path& place = FastTemporaryPlace()) {
-    std::string name = (place / "pregrasp-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
+  explicit TemporaryFolder(const std::filesystem::path& place = FastTemporaryPlace())
+      : TestFolder(place) {}
 };
 
 inline Vector3 RandomVector(Rng& rng) { return {rng.Normal(), rng.Normal(), rng.Normal()}; }
