@@ -10,7 +10,7 @@ namespace pregrasp {
 namespace {
 
 // Key layout: body a, body b (12 bits each), piece a, piece b (10 bits each), feature (20 bits).
-constexpr int kMaxBodies = 1 << 12, kMaxPieces = 1 << 10, kFeatureBits = 20;
+constexpr int kMaxBodies = 1 << 12, kMaxPieces = 1 << 10;
 
 std::uint64_t MakeKey(int body_a, int body_b, int piece_a, int piece_b) {
   return (static_cast<std::uint64_t>(body_a) << 52) | (static_cast<std::uint64_t>(body_b) << 40) |

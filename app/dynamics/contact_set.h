@@ -12,6 +12,9 @@
 
 namespace pregrasp {
 
+/// A key's lowest bits name a point's feature, the others the two pieces.
+inline constexpr int kFeatureBits = 20;
+
 /// The contact between two convex pieces of two bodies, in one step.
 struct Contact {
   int movable_a = -1, movable_b = -1;  ///< movable index, -1 for a fixed body

@@ -22,7 +22,7 @@ BodyKernel MakeBodyKernel(int body, double mass, const Vector3& p_BoBcm, const M
     if (kernel.R_BP.determinant() < 0.0) kernel.R_BP.col(0) *= -1.0;
     kernel.I_P = eigen.eigenvalues();
   }
-  kernel.inv_sqrt_mass = 1.0 / std::sqrt(mass);
+  kernel.inv_mass = 1.0 / mass;
   kernel.inv_sqrt_I_P = kernel.I_P.cwiseSqrt().cwiseInverse();
   return kernel;
 }

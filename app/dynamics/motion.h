@@ -14,7 +14,7 @@ struct BodyKernel {
   Vector3 p_BoBcm = Vector3::Zero();
   Matrix3 R_BP = Matrix3::Identity();
   Vector3 I_P = Vector3::Zero();  ///< principal moments [kg m^2]
-  double inv_sqrt_mass = 0.0;
+  double inv_mass = 0.0;
   Vector3 inv_sqrt_I_P = Vector3::Zero();
   double reach = 0.0;  ///< largest distance of a point of the shape from the centre of mass [m]
 };

@@ -55,13 +55,13 @@ void Predict(const BodyKernel& kernel, const BodyState& body, const Vector3& gra
 // Moves a body to the end of the step. The orientation follows the angular velocity halfway through
 // the step, free of torque (second order, where the plain Euler step gains energy while tumbling);
 // the angular momentum in W is kept exactly.
-void Advance(const BodyKernel& kernel, const BodyMotion& motion, const Vector6& y, const Vector6& z,
-             double dt, BodyState* body) {
+void Advance(const BodyKernel& kernel, const BodyMotion& motion, const BodyVelocity& y,
+             const BodyVelocity& z, double dt, BodyState* body) {
   const Vector3 inv_I = kernel.inv_sqrt_I_P.cwiseProduct(kernel.inv_sqrt_I_P);
-  const Vector3 L_P = kernel.I_P.cwiseProduct(kernel.inv_sqrt_I_P).cwiseProduct(y.tail<3>());
-  const Vector3 w_P = kernel.inv_sqrt_I_P.cwiseProduct(y.tail<3>());
-  const Vector3 w_P_mid = w_P - 0.5 * dt * inv_I.cwiseProduct(w_P.cross(L_P)) +
-                          kernel.inv_sqrt_I_P.cwiseProduct(z.tail<3>());
+  const Vector3 L_P = kernel.I_P.cwiseProduct(kernel.inv_sqrt_I_P).cwiseProduct(y.w_P);
+  const Vector3 w_P = kernel.inv_sqrt_I_P.cwiseProduct(y.w_P);
+  const Vector3 w_P_mid =
+      w_P - 0.5 * dt * inv_I.cwiseProduct(w_P.cross(L_P)) + kernel.inv_sqrt_I_P.cwiseProduct(z.w_P);
   const Vector3 turn = 0.5 * dt * (motion.R_WP * w_P_mid);
   const Quaternion& q = body->q_WB;
   const Quaternion dq = Quaternion(0.0, turn.x(), turn.y(), turn.z()) * q;
@@ -71,10 +71,9 @@ void Advance(const BodyKernel& kernel, const BodyMotion& motion, const Vector6& 
   const Matrix3 R_WP = R_WB * kernel.R_BP;
   const Vector3 L_W = motion.R_WP * L_P;
   body->w_WB = R_WP * inv_I.cwiseProduct(R_WP.transpose() * L_W);
-  const Vector3 v_WBcm = kernel.inv_sqrt_mass * y.head<3>();
   const Vector3 c_W = R_WB * kernel.p_BoBcm;
-  body->p_WB = motion.p_WBcm + dt * (v_WBcm + kernel.inv_sqrt_mass * z.head<3>()) - c_W;
-  body->v_WB = v_WBcm - body->w_WB.cross(c_W);
+  body->p_WB = motion.p_WBcm + dt * (y.v_W + z.v_W) - c_W;
+  body->v_WB = y.v_W - body->w_WB.cross(c_W);
 }
 
 }  // namespace
@@ -118,7 +117,7 @@ struct World::Impl {
                          FormatDouble(kernels.back().I_P.minCoeff()));
       }
     }
-    law = FingertipLaw(scene.fingertips, kernels.at(0).mass);
+    law = FingertipLaw(scene.fingertips, kernels.at(0).mass, config.dt);
     initial.bodies = model->GetDefaultState();
     models.push_back(std::move(model));
   }
@@ -154,11 +153,10 @@ struct World::Impl {
     scratch->solver.SetContacts(config, kernels, scratch->motions, scratch->contacts, state.cache);
     for (int f = 0; f < kNumFingers; ++f) {
       if (!state.fingers[f].on) continue;
-      scratch->solver.AddFinger(kernels[0], scratch->motions[0],
-                                MakeFingerRows(law, state.fingers[f], f, state.bodies[0],
-                                               scratch->motions[0], config.dt));
+      scratch->solver.AddFinger(law, f, state.fingers[f], state.bodies[0], kernels[0],
+                                scratch->motions[0]);
     }
-    scratch->solver.Solve(config);
+    scratch->solver.Solve(config, law);
   }
 
   // Everything but the bodies, once they have moved.
@@ -168,19 +166,12 @@ struct World::Impl {
     solver.SaveImpulses(scratch.contacts, &state->cache);
     const RigidTransform X_WO = state->bodies[0].X_WB();
     for (const FingerRows& rows : solver.fingers()) {
-      AdvanceFinger(law, object_surface, rows, solver.CalcObjectVelocity(rows), X_WO, config.dt,
+      AdvanceFinger(law, object_surface, rows, rows.CalcVelocity(solver.velocity(0)), X_WO,
                     &state->fingers[rows.finger]);
     }
     ++state->step;
     state->t += config.dt;
-    if (contacts == nullptr) return;
-    contacts->clear();
-    for (const PointRows& row : solver.points()) {
-      const Contact& contact = scratch.contacts[row.contact];
-      contacts->push_back({contact.body_a, contact.body_b, contact.manifold.points[row.point].p_W,
-                           contact.manifold.nhat_W, solver.impulse_W(row) / config.dt, row.phi,
-                           solver.CalcSlipVelocity(row)});
-    }
+    if (contacts != nullptr) solver.GetPoints(scratch.contacts, config.dt, contacts);
   }
 };
 
