@@ -35,7 +35,7 @@ bool Overlaps(const CollisionScene::Scratch::Bounds& a, const CollisionScene::Sc
 PlacedConvex Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_WB) {
   PlacedConvex placed;
   placed.convex = &convex;
-  placed.R_WP = R_WB * convex.X_BP.linear();
+  placed.R_WP = convex.is_aligned ? R_WB : Matrix3(R_WB * convex.X_BP.linear());
   placed.p_WP = p_WB + R_WB * convex.X_BP.translation();
   return placed;
 }

@@ -124,11 +124,15 @@ void FindImpulses(const Contact& contact, std::span<const WorldState::CachedImpu
   while (begin != end && begin->key >> kFeatureBits < pieces) ++begin;
   const WorldState::CachedImpulse* last = begin;
   while (last != end && last->key >> kFeatureBits == pieces) ++last;
+  const WorldState::CachedImpulse* next = begin;  // points keep their order as a rule
   for (int k = 0; k < contact.manifold.size; ++k) {
     const std::uint64_t key = contact.key + contact.manifold.points[k].feature;
-    const WorldState::CachedImpulse* cached = begin;
-    while (cached != last && cached->key != key) ++cached;
-    (*impulses_W)[k] = cached != last ? &cached->impulse_W : nullptr;
+    const auto is_it = [key](const WorldState::CachedImpulse& cached) { return cached.key == key; };
+    const WorldState::CachedImpulse* found = std::find_if(next, last, is_it);
+    if (found == last) found = std::find_if(begin, next, is_it);
+    const bool bore_load = found != last && found->key == key;
+    (*impulses_W)[k] = bore_load ? &found->impulse_W : nullptr;
+    if (bore_load) next = found + 1;
   }
   *cache = {last, end};
 }
@@ -174,9 +178,8 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
 // How fast a point may approach: so that it just closes its gap in this step; or, where it bounces,
 // minus the speed it leaves with.
 void ContactSolver::SetBias(const StepConfig& config, const ContactRows& rows) const {
-  for (PointRows& point : rows.points) {
-    point.bias = point.phi > 0.0 ? point.phi / config.dt : 0.0;
-  }
+  const double inv_dt = 1.0 / config.dt;
+  for (PointRows& point : rows.points) point.bias = std::max(0.0, point.phi * inv_dt);
   if (config.restitution == 0.0) return;
   VisitRelativeVelocity(rows, y_.data(), [&](auto v) {
     for (PointRows& point : rows.points) {

@@ -45,6 +45,7 @@ struct PieceBuilder {
     Convex convex;
     convex.kind = kind;
     convex.X_BP = X_BP;
+    convex.is_aligned = X_BP.linear() == Matrix3::Identity();
     convex.half = half;
     return convex;
   }

@@ -41,6 +41,7 @@ struct Polytope {
 struct Convex {
   ConvexKind kind = ConvexKind::kBox;
   RigidTransform X_BP = RigidTransform::Identity();
+  bool is_aligned = true;                    ///< X_BP does not turn
   Vector3 half = Vector3::Zero();            ///< half extents of the bounding box in P [m]
   double radius = 0.0;                       ///< cylinder and capsule (a sphere has no height) [m]
   double half_height = 0.0;                  ///< along z, without caps [m]

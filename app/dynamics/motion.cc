@@ -18,6 +18,7 @@ BodyKernel MakeBodyKernel(int body, double mass, const Vector3& p_BoBcm, const M
     kernel.I_P = I_BBcm.diagonal();
   } else {
     const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(I_BBcm);
+    kernel.is_aligned = false;
     kernel.R_BP = eigen.eigenvectors();
     if (kernel.R_BP.determinant() < 0.0) kernel.R_BP.col(0) *= -1.0;
     kernel.I_P = eigen.eigenvalues();

@@ -44,7 +44,7 @@ void RequireRange(const char* field, double value, double low, double high) {
 void Predict(const BodyKernel& kernel, const BodyState& body, const Vector3& gravity, double dt,
              BodyMotion* motion) {
   motion->R_WB = body.q_WB.toRotationMatrix();
-  motion->R_WP = motion->R_WB * kernel.R_BP;
+  motion->R_WP = kernel.CalcR_WP(motion->R_WB);
   const Vector3 c_W = motion->R_WB * kernel.p_BoBcm;
   motion->p_WB = body.p_WB;
   motion->p_WBcm = body.p_WB + c_W;
@@ -68,7 +68,7 @@ void Advance(const BodyKernel& kernel, const BodyMotion& motion, const BodyVeloc
   body->q_WB.coeffs() = (q.coeffs() + dq.coeffs()).normalized();
 
   const Matrix3 R_WB = body->q_WB.toRotationMatrix();
-  const Matrix3 R_WP = R_WB * kernel.R_BP;
+  const Matrix3 R_WP = kernel.CalcR_WP(R_WB);
   const Vector3 L_W = motion.R_WP * L_P;
   body->w_WB = R_WP * inv_I.cwiseProduct(R_WP.transpose() * L_W);
   const Vector3 c_W = R_WB * kernel.p_BoBcm;
