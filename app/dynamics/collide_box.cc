@@ -222,19 +222,9 @@ class BoxPair {
           (is_corner ? corner[point.edge] : 32U + 8U * in + point.edge) | (flip ? kFaceOfB : 0U)};
     }
     if (count == 0) return FaceResult::kApart;
-    std::array<int, Manifold::kMaxPoints> chosen;
-    Matrix3 R_WT;
-    R_WT << ref.R_WP.col(ix), ref.R_WP.col(iy), s * ref.R_WP.col(i);
-    const int num_chosen = ChoosePoints(points.data(), count, Approach(ref, inc, ref.p_WP, R_WT),
-                                        manifold->loaded_features(), &chosen);
-    for (int n = 0; n < num_chosen; ++n) {
-      const PlanarPoint& point = points[chosen[n]];
-      Vector3 p_ref;
-      p_ref[ix] = point.x;
-      p_ref[iy] = point.y;
-      p_ref[i] = s * (half[i] + 0.5 * point.phi);
-      manifold->Add(ref.p_WP + ref.R_WP * p_ref, point.phi, point.feature);
-    }
+    const ContactPlane plane{ref.p_WP + s * half[i] * ref.R_WP.col(i), ref.R_WP.col(ix),
+                             ref.R_WP.col(iy), s * ref.R_WP.col(i)};
+    AddFacePoints(points.data(), count, plane, Approach(ref, inc, plane), manifold);
     return FaceResult::kTouching;
   }
 

@@ -121,19 +121,14 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   if (lowest_height > limit) return;
   points[0] = {x.dot(vertices[lowest]), y.dot(vertices[lowest]), base + lowest_height,
                static_cast<std::uint32_t>(lowest) | plane.flag};
-  std::array<int, Manifold::kMaxPoints> chosen;
+  ContactPlane contact{plane.p_AQ, plane.a.R_WP.col(ix), plane.a.R_WP.col(iy),
+                       plane.s * plane.a.R_WP.col(plane.i)};
+  contact.p_WO[plane.i] = plane.s * plane.a.convex->half[plane.i];
+  contact.p_WO = plane.a.p_WP + plane.a.R_WP * contact.p_WO;
   // Four are taken as they are, without the lowest's copy.
   const int skip = count <= 5 ? 1 : 0;
-  Matrix3 R_WT;
-  R_WT << plane.a.R_WP.col(ix), plane.a.R_WP.col(iy), plane.s * plane.a.R_WP.col(plane.i);
-  const int num_chosen = ChoosePoints(points.data() + skip, count - skip,
-                                      Approach(plane.a, plane.q, plane.q.p_WP, R_WT),
-                                      manifold->loaded_features(), &chosen);
-  for (int k = 0; k < num_chosen; ++k) {
-    const PlanarPoint& point = points[skip + chosen[k]];
-    plane.Add(plane.p_AQ + plane.R_AQ * vertices[point.feature & ~plane.flag], point.feature,
-              manifold);
-  }
+  AddFacePoints(points.data() + skip, count - skip, contact, Approach(plane.a, plane.q, contact),
+                manifold);
 }
 
 }  // namespace

@@ -12,6 +12,10 @@ namespace {
 // Key layout: body a, body b (12 bits each), piece a, piece b (10 bits each), feature (20 bits).
 constexpr int kMaxBodies = 1 << 12, kMaxPieces = 1 << 10;
 
+// Overlap that the solver leaves alone anyway [m].
+constexpr double kMaxOverlap = 1e-6;
+constexpr double kMaxSinking = 1e-7;
+
 std::uint64_t MakeKey(int body_a, int body_b, int piece_a, int piece_b) {
   return (static_cast<std::uint64_t>(body_a) << 52) | (static_cast<std::uint64_t>(body_b) << 40) |
          (static_cast<std::uint64_t>(piece_a) << 30) |
@@ -49,6 +53,44 @@ void TakeLoaded(std::uint64_t key, std::span<const WorldState::CachedImpulse>* c
     manifold->loaded[manifold->num_loaded++] = static_cast<std::uint32_t>(cache->front().key - key);
     *cache = cache->subspan(1);
   }
+}
+
+// How the gap of a contact changes in the step.
+Approach CalcApproach(const Contact& contact, const std::vector<BodyMotion>& motions,
+                      const std::vector<BodyStep>& steps) {
+  const ContactPlane& plane = contact.manifold.plane;
+  Vector3 shift = Vector3::Zero(), turn = Vector3::Zero();  // of b relative to a
+  const auto add = [&](int movable, double sign) {
+    if (movable < 0) return;
+    const BodyStep& step = steps[movable];
+    shift += sign * (step.shift_W + step.turn_W.cross(plane.p_WO - motions[movable].p_WBcm));
+    turn += sign * step.turn_W;
+  };
+  add(contact.movable_a, -1.0);
+  add(contact.movable_b, 1.0);
+  return Approach(shift, turn, contact.manifold.nhat_W, plane);
+}
+
+// The deepest point at the end of the step, if it is left out, if it sinks in, and if it is deeper
+// than those that are not.
+const PlanarPoint* FindOverlapping(const Manifold& manifold, const Approach& approach,
+                                   const PlanarPoint* points) {
+  const PlanarPoint* deepest = nullptr;
+  double least = -kMaxSinking;
+  for (int i = 0; i < manifold.num_face_points; ++i) {
+    const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
+    if (gap > least) continue;
+    if (gap > points[i].phi - kMaxSinking && gap > -kMaxOverlap) continue;
+    if (manifold.Has(points[i].feature)) continue;
+    least = gap;
+    deepest = &points[i];
+  }
+  if (deepest == nullptr) return nullptr;
+  for (int i = 0; i < manifold.num_face_points; ++i) {
+    const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
+    if (gap < least + kMaxSinking && manifold.Has(points[i].feature)) return nullptr;
+  }
+  return deepest;
 }
 
 }  // namespace
@@ -130,18 +172,19 @@ void CollisionScene::PlaceMovables(const std::vector<BodyKernel>& kernels,
   }
 }
 
-void CollisionScene::CollidePair(const Pair& pair, double margin, const Scratch& scratch,
+void CollisionScene::CollidePair(const Pair& pair, double margin, Scratch* scratch,
                                  std::span<const WorldState::CachedImpulse>* cache,
                                  std::vector<Contact>* contacts) const {
   const CollisionBody &a = bodies_[pair.a], &b = bodies_[pair.b];
   const auto placed = [&](const CollisionBody& body) {
-    return (body.movable < 0 ? placed_.data() : scratch.pieces.data()) + body.first_placed;
+    return (body.movable < 0 ? placed_.data() : scratch->pieces.data()) + body.first_placed;
   };
   const PlacedConvex *pieces_a = placed(a), *pieces_b = placed(b);
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
     for (std::size_t j = 0; j < b.pieces.size(); ++j) {
       Contact& contact = contacts->emplace_back();
       contact.key = MakeKey(pair.a, pair.b, static_cast<int>(i), static_cast<int>(j));
+      contact.manifold.face_points = &scratch->face_points;
       TakeLoaded(contact.key, cache, &contact.manifold);
       if (!Collide(pieces_a[i], pieces_b[j], margin, &contact.manifold)) {
         contacts->pop_back();
@@ -163,15 +206,33 @@ void CollisionScene::FindContacts(const std::vector<BodyKernel>& kernels,
   PlaceMovables(kernels, motions, dt, scratch);
   std::span<const WorldState::CachedImpulse> cache_left = cache;
   contacts->clear();
+  scratch->face_points.clear();
   for (const Pair& pair : pairs_) {
     const int movable_a = bodies_[pair.a].movable, movable_b = bodies_[pair.b].movable;
     const auto& bounds_a = movable_a < 0 ? fixed_bounds_[pair.a] : scratch->bounds[movable_a];
     const auto& bounds_b = movable_b < 0 ? fixed_bounds_[pair.b] : scratch->bounds[movable_b];
     const double margin = margin_ + bounds_a.margin + bounds_b.margin;
     if (Overlaps(bounds_a, bounds_b, margin)) {
-      CollidePair(pair, margin, *scratch, &cache_left, contacts);
+      CollidePair(pair, margin, scratch, &cache_left, contacts);
     }
   }
+}
+
+bool CollisionScene::AddOverlapping(const std::vector<BodyMotion>& motions,
+                                    const std::vector<BodyStep>& steps, const Scratch& scratch,
+                                    std::vector<Contact>* contacts) {
+  bool added = false;
+  for (Contact& contact : *contacts) {
+    Manifold& manifold = contact.manifold;
+    if (manifold.num_face_points == 0 || manifold.size == Manifold::kMaxPoints) continue;
+    const PlanarPoint* point =
+        FindOverlapping(manifold, CalcApproach(contact, motions, steps),
+                        scratch.face_points.data() + manifold.first_face_point);
+    if (point == nullptr) continue;
+    manifold.Add(manifold.plane.At(point->x, point->y, point->phi), point->phi, point->feature);
+    added = true;
+  }
+  return added;
 }
 
 }  // namespace pregrasp

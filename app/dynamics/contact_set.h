@@ -35,6 +35,7 @@ class CollisionScene {
       double margin;
     };
     std::vector<Bounds> bounds;
+    std::vector<PlanarPoint> face_points;  ///< of contacts that leave some out
   };
 
   CollisionScene(const Scene& scene, double margin);
@@ -51,6 +52,14 @@ class CollisionScene {
                     const std::vector<WorldState::CachedImpulse>& cache, double dt,
                     Scratch* scratch, std::vector<Contact>* contacts) const;
 
+  /// Adds to each contact the point that the shapes would overlap at most after the step, of those
+  /// left out, if any would by more than a micrometre.
+  /// @param steps  one per movable: how the step takes it once `contacts` have acted.
+  /// @returns whether there is one.
+  static bool AddOverlapping(const std::vector<BodyMotion>& motions,
+                             const std::vector<BodyStep>& steps, const Scratch& scratch,
+                             std::vector<Contact>* contacts);
+
  private:
   struct CollisionBody {
     int movable = -1;
@@ -66,7 +75,7 @@ class CollisionScene {
 
   void PlaceMovables(const std::vector<BodyKernel>& kernels, const std::vector<BodyMotion>& motions,
                      double dt, Scratch* scratch) const;
-  void CollidePair(const Pair& pair, double margin, const Scratch& scratch,
+  void CollidePair(const Pair& pair, double margin, Scratch* scratch,
                    std::span<const WorldState::CachedImpulse>* cache,
                    std::vector<Contact>* contacts) const;
 

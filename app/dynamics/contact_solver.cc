@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pregrasp {
 namespace {
@@ -115,6 +116,29 @@ double SweepCorrections(const ContactRows& rows, BodyVelocity* z) {
   });
 }
 
+// Says when to stop sweeping. Of a crowd of points in which a body rests on a few that are near
+// each other, sweeps converge so slowly that much is still to come when they change little: there
+// what is to come is bounded, as the sum of a geometric series.
+class StopRule {
+ public:
+  StopRule(double tolerance, bool crowded) : tolerance_(tolerance), crowded_(crowded) {}
+
+  /// @param change  largest change of an impulse over the mass in a sweep [m/s].
+  bool IsMet(double change) {
+    // From one sweep to the next but one, as those to and fro differ.
+    const double rate =
+        before_last_ > 0.0 ? std::min(kSlowest, std::sqrt(change / before_last_)) : kSlowest;
+    before_last_ = std::exchange(last_, change);
+    return change < tolerance_ && (!crowded_ || change * rate < tolerance_ * (1.0 - rate));
+  }
+
+ private:
+  static constexpr double kSlowest = 0.99;
+  const double tolerance_;
+  const bool crowded_;
+  double last_ = 0.0, before_last_ = 0.0;
+};
+
 // The impulses that the contact's points bore in the last step; null for those that bore none.
 // Takes them and all before them off `cache`, which is in the order of the keys.
 void FindImpulses(const Contact& contact, std::span<const WorldState::CachedImpulse>* cache,
@@ -160,8 +184,10 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
   std::span<PointRows> points_left(point_memory_.data(), num_points);
   std::span<const WorldState::CachedImpulse> cache_left = cache;
   std::array<const Vector3*, Manifold::kMaxPoints> start_W;
+  crowded_ = false;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const std::size_t size = contacts[c].manifold.size;
+    crowded_ = crowded_ || contacts[c].manifold.crowded;
     FindImpulses(contacts[c], &cache_left, &start_W);
     rows_[c].Set(kernels, motions, contacts[c], start_W, points_left.first(size), y_start_.data());
     rows_[c].SetPairs(num_points > kMaxPairedPoints);
@@ -198,8 +224,21 @@ void ContactSolver::AddFinger(const FingertipLaw& law, int index, const Fingerti
   rows.AddImpulse(rows.lambda, &y_[0]);
 }
 
+void ContactSolver::AddPoints(const StepConfig& config, const std::vector<BodyKernel>& kernels,
+                              const std::vector<BodyMotion>& motions,
+                              const std::vector<Contact>& contacts) {
+  SaveImpulses(contacts, &found_impulses_);
+  found_fingers_ = fingers_;
+  SetContacts(config, kernels, motions, contacts, found_impulses_);
+  fingers_.swap(found_fingers_);
+  for (const FingerRows& rows : fingers_) rows.AddImpulse(rows.lambda, &y_[0]);
+}
+
 void ContactSolver::Solve(const StepConfig& config, const FingertipLaw& law) {
-  const int max_sweeps = y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many;
+  constexpr int kMoreSweeps = 5;  // as many times, in a crowd of points
+  const int max_sweeps =
+      (y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many) * (crowded_ ? kMoreSweeps : 1);
+  StopRule stop(config.tolerance, crowded_);
   // On one body, sweeping to and fro converges faster. Along a row of bodies it does not: a push
   // travels in the order of the contacts.
   const bool alternate = y_.size() == 1;
@@ -214,7 +253,7 @@ void ContactSolver::Solve(const StepConfig& config, const FingertipLaw& law) {
       const ContactRows& rows = rows_[backward ? num_rows - 1 - i : i];
       change = std::max(change, SweepRows(backward, rows, y_.data()) * rows.inv_mass_lighter());
     }
-    if (change < config.tolerance) break;
+    if (stop.IsMet(change)) break;
     if (sweep % 2 == 1 && sweep + 1 < max_sweeps) Accelerate(sweep > 1 ? CalcStretch() : 0.0);
   }
   z_.assign(y_.size(), {});

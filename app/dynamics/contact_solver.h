@@ -25,6 +25,11 @@ class ContactSolver {
   void AddFinger(const FingertipLaw& law, int index, const FingertipState& finger,
                  const BodyState& state, const BodyKernel& kernel, const BodyMotion& motion);
 
+  /// After Solve: sets up the rows anew, with the points that the manifolds of `contacts` have
+  /// gained at their ends, from the impulses found so far.
+  void AddPoints(const StepConfig& config, const std::vector<BodyKernel>& kernels,
+                 const std::vector<BodyMotion>& motions, const std::vector<Contact>& contacts);
+
   /// Velocity sweeps, then, if a pair overlaps, position-correction sweeps.
   void Solve(const StepConfig& config, const FingertipLaw& law);
 
@@ -58,6 +63,9 @@ class ContactSolver {
   std::vector<ContactRows> rows_memory_;
   std::span<ContactRows> rows_;  ///< of this step, one per contact
   std::vector<FingerRows> fingers_;
+  bool crowded_ = false;                                   ///< whether some contact's manifold is
+  std::vector<WorldState::CachedImpulse> found_impulses_;  ///< memory for AddPoints
+  std::vector<FingerRows> found_fingers_;
 };
 
 }  // namespace pregrasp

@@ -29,7 +29,7 @@ enum class OverlapResult : std::uint8_t { kNone, kSliver, kTouching };
 
 /// Contact points where features of A and B lie over each other, seen along nhat_W (from A to B):
 /// corners of one over the other and crossings of their outlines, with the gap measured along
-/// nhat_W, exactly for polygons and discs; those within `margin` are reduced as ChoosePoints does.
+/// nhat_W, exactly for polygons and discs; those within `margin` are reduced as AddFacePoints does.
 /// @returns kSliver if the overlap is thinner than kMinOverlap somewhere.
 OverlapResult OverlapFeatures(const PlacedConvex& a, const PlacedConvex& b,
                               const Feature& feature_a, const Feature& feature_b,

@@ -39,7 +39,7 @@ int FindLargest(const double* values, int count, double least) {
   return largest;
 }
 
-// Those of more than four points that stand for all; see ChoosePoints.
+// Those of more than four points that stand for all; see AddFacePoints.
 int ChooseFour(const PlanarPoint* points, int count, const Approach& approach, int* chosen) {
   // Each choice is a pass of arithmetic over all points, which compilers turn into vector
   // instructions, and a search through its results.
@@ -85,50 +85,74 @@ int ChooseFour(const PlanarPoint* points, int count, const Approach& approach, i
   return 4;
 }
 
-// Height of a point over the plane through three others, along the normal [m].
-double CalcHeight(const PlanarPoint& p, const PlanarPoint& p0, const PlanarPoint& p1,
-                  const PlanarPoint& p2) {
-  const SignedArea base(p0, p1), side(p2, p0);
-  const double along_1 = side.At(p.x, p.y) * (p1.phi - p0.phi);
-  const double along_2 = base.At(p.x, p.y) * (p2.phi - p0.phi);
-  return p.phi - p0.phi - (along_1 + along_2) / base.At(p2.x, p2.y);
-}
+// The plane through the gaps at three places.
+struct GapPlane {
+  double x0, y0, phi0, per_x, per_y;
 
-}  // namespace
-
-Approach::Approach(const PlacedConvex& a, const PlacedConvex& b, const Vector3& p_WO,
-                   const Matrix3& R_WT) {
-  const Vector3 turn = b.turn_W - a.turn_W;
-  const Vector3 shift =
-      b.shift_W + b.turn_W.cross(p_WO - b.p_WP) - a.shift_W - a.turn_W.cross(p_WO - a.p_WP);
-  const Vector3 nhat = R_WT.col(2);
-  at_origin = nhat.dot(shift);
-  per_x = nhat.dot(turn.cross(R_WT.col(0)));
-  per_y = nhat.dot(turn.cross(R_WT.col(1)));
-}
-
-int ChoosePoints(const PlanarPoint* points, int count, const Approach& approach,
-                 std::span<const std::uint32_t> loaded,
-                 std::array<int, Manifold::kMaxPoints>* chosen) {
-  if (count <= kNumCorners) {
-    for (int i = 0; i < count; ++i) (*chosen)[i] = i;
-    return count;
+  GapPlane(const PlanarPoint& p0, const PlanarPoint& p1, const PlanarPoint& p2)
+      : x0(p0.x), y0(p0.y), phi0(p0.phi) {
+    const double dx_1 = p1.x - x0, dy_1 = p1.y - y0, dx_2 = p2.x - x0, dy_2 = p2.y - y0;
+    const double d_1 = p1.phi - phi0, d_2 = p2.phi - phi0;
+    const double inv_area = 1.0 / (dx_1 * dy_2 - dx_2 * dy_1);
+    per_x = (d_1 * dy_2 - d_2 * dy_1) * inv_area;
+    per_y = (dx_1 * d_2 - dx_2 * d_1) * inv_area;
   }
-  const int num_corners = ChooseFour(points, count, approach, chosen->data());
-  int size = num_corners;
-  for (const std::uint32_t feature : loaded) {
+  bool Holds(const PlanarPoint& p) const {
+    return std::abs(p.phi - phi0 - per_x * (p.x - x0) - per_y * (p.y - y0)) < kInPlane;
+  }
+};
+
+// Chooses among more than four points; see AddFacePoints. Returns how many; their indices are in
+// `chosen`.
+int ChoosePoints(const PlanarPoint* points, int count, const Approach& approach, Manifold* manifold,
+                 std::array<int, Manifold::kMaxPoints>* chosen) {
+  int size = ChooseFour(points, count, approach, chosen->data());
+  if (size < 3) return size;
+  const GapPlane plane(points[(*chosen)[0]], points[(*chosen)[1]], points[(*chosen)[2]]);
+  manifold->crowded = !std::all_of(points, points + count,
+                                   [&plane](const PlanarPoint& p) { return plane.Holds(p); });
+  if (!manifold->crowded) return size;
+  for (const std::uint32_t feature : manifold->loaded_features()) {
     if (size == Manifold::kMaxPoints) break;
     const auto is_it = [&](int i) { return points[i].feature == feature; };
     if (std::any_of(chosen->data(), chosen->data() + size, is_it)) continue;
     int i = 0;
     while (i < count && !is_it(i)) ++i;
-    if (i == count) continue;
-    const bool in_plane = num_corners > 2 &&
-                          std::abs(CalcHeight(points[i], points[(*chosen)[0]], points[(*chosen)[1]],
-                                              points[(*chosen)[2]])) < kInPlane;
-    if (!in_plane) (*chosen)[size++] = i;
+    if (i < count && !plane.Holds(points[i])) (*chosen)[size++] = i;
   }
   return size;
+}
+
+}  // namespace
+
+Approach::Approach(const PlacedConvex& a, const PlacedConvex& b, const ContactPlane& plane)
+    : Approach(b.shift_W + b.turn_W.cross(plane.p_WO - b.p_WP) - a.shift_W -
+                   a.turn_W.cross(plane.p_WO - a.p_WP),
+               b.turn_W - a.turn_W, plane.nhat_W, plane) {}
+
+Approach::Approach(const Vector3& shift_W, const Vector3& turn_W, const Vector3& nhat_W,
+                   const ContactPlane& plane)
+    : at_origin(nhat_W.dot(shift_W)),
+      per_x(nhat_W.dot(turn_W.cross(plane.x_W))),
+      per_y(nhat_W.dot(turn_W.cross(plane.y_W))) {}
+
+void AddFacePoints(const PlanarPoint* points, int count, const ContactPlane& plane,
+                   const Approach& approach, Manifold* manifold) {
+  const auto add = [&](const PlanarPoint& point) {
+    manifold->Add(plane.At(point.x, point.y, point.phi), point.phi, point.feature);
+  };
+  if (count <= kNumCorners) {
+    std::for_each(points, points + count, add);
+    return;
+  }
+  std::array<int, Manifold::kMaxPoints> chosen;
+  const int num_chosen = ChoosePoints(points, count, approach, manifold, &chosen);
+  for (int k = 0; k < num_chosen; ++k) add(points[chosen[k]]);
+  if (num_chosen == count || manifold->face_points == nullptr) return;
+  manifold->plane = plane;
+  manifold->first_face_point = static_cast<int>(manifold->face_points->size());
+  manifold->num_face_points = count;
+  manifold->face_points->insert(manifold->face_points->end(), points, points + count);
 }
 
 }  // namespace pregrasp

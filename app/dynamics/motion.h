@@ -38,6 +38,12 @@ struct BodyMotion {
   Vector3 v_WBcm = Vector3::Zero();  ///< predicted, of the centre of mass
 };
 
+/// How far a step takes a movable body, to first order.
+struct BodyStep {
+  Vector3 shift_W = Vector3::Zero();  ///< of its centre of mass [m]
+  Vector3 turn_W = Vector3::Zero();   ///< [rad]
+};
+
 /// What the contacts of one step did to one movable body: impulses about its centre of mass,
 /// expressed in W.
 struct BodyImpulse {

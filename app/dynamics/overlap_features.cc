@@ -76,7 +76,8 @@ class Overlap {
           const Feature& feature_b, const Vector3& nhat_W)
       : R_WT_(FrameFromNormal(nhat_W)),
         origin_(feature_a.points[0]),
-        approach_(a, b, origin_, R_WT_) {
+        plane_{origin_, R_WT_.col(0), R_WT_.col(1), R_WT_.col(2)},
+        approach_(a, b, plane_) {
     Project(feature_a, &a_);
     Project(feature_b, &b_);
   }
@@ -364,31 +365,34 @@ class Overlap {
   }
 
   OverlapResult Report(double margin, Manifold* manifold) {
+    manifold->nhat_W = plane_.nhat_W;
+    if (!(a_.is_region() && b_.is_region())) {
+      for (int i = 0; i < count_; ++i) {
+        const Candidate& c = candidates_[i];
+        if (c.height_b - c.height_a > margin) continue;
+        manifold->Add(origin_ + R_WT_ * Vector3(c.x, c.y, 0.5 * (c.height_a + c.height_b)),
+                      c.height_b - c.height_a, c.id);
+      }
+      return manifold->size > 0 ? OverlapResult::kTouching : OverlapResult::kNone;
+    }
     std::array<PlanarPoint, kMaxCandidates> points;
-    std::array<int, kMaxCandidates> index;
     int near = 0;
     for (int i = 0; i < count_; ++i) {
       const Candidate& c = candidates_[i];
       const double phi = c.height_b - c.height_a;
-      if (phi > margin) continue;
-      index[near] = i;
-      points[near++] = {c.x, c.y, phi, c.id};
+      if (phi <= margin) points[near++] = {c.x, c.y, phi, c.id};
     }
     if (near == 0) return OverlapResult::kNone;
-    manifold->nhat_W = R_WT_.col(2);
-    std::array<int, Manifold::kMaxPoints> chosen;
-    const int num_chosen =
-        ChoosePoints(points.data(), near, approach_, manifold->loaded_features(), &chosen);
-    for (int n = 0; n < num_chosen; ++n) {
-      const Candidate& c = candidates_[index[chosen[n]]];
-      manifold->Add(origin_ + R_WT_ * Vector3(c.x, c.y, 0.5 * (c.height_a + c.height_b)),
-                    points[chosen[n]].phi, c.id);
-    }
+    ContactPlane on_a = plane_;
+    on_a.x_W += a_.gradient.x() * plane_.nhat_W;
+    on_a.y_W += a_.gradient.y() * plane_.nhat_W;
+    AddFacePoints(points.data(), near, on_a, approach_, manifold);
     return OverlapResult::kTouching;
   }
 
   const Matrix3 R_WT_;
   const Vector3 origin_;
+  const ContactPlane plane_;  // at feature a's first point
   const Approach approach_;
   Outline a_, b_;
   std::array<Candidate, kMaxCandidates> candidates_;

@@ -24,6 +24,7 @@ struct StepScratch {
   CollisionScene::Scratch collision;
   std::vector<Contact> contacts;
   ContactSolver solver;
+  std::vector<BodyStep> steps;
   std::vector<BodyImpulse> impulses;
 };
 
@@ -146,8 +147,10 @@ struct World::Impl {
     return energy;
   }
 
-  // Contacts and fingers, from scratch->motions to the solver's velocities.
+  // Contacts and fingers, from scratch->motions to the solver's velocities. Where a point that was
+  // left out would overlap after the step, they are solved again with that point.
   void SolveContacts(const WorldState& state, StepScratch* scratch) const {
+    constexpr int kMaxRounds = 6;
     collision.FindContacts(kernels, scratch->motions, state.cache, config.dt, &scratch->collision,
                            &scratch->contacts);
     scratch->solver.SetContacts(config, kernels, scratch->motions, scratch->contacts, state.cache);
@@ -157,6 +160,24 @@ struct World::Impl {
                                 scratch->motions[0]);
     }
     scratch->solver.Solve(config, law);
+    for (int round = 1; round < kMaxRounds && AddOverlapping(scratch); ++round) {
+      scratch->solver.AddPoints(config, kernels, scratch->motions, scratch->contacts);
+      scratch->solver.Solve(config, law);
+    }
+  }
+
+  // Adds the points that the velocities found so far make overlap. Returns whether there are any.
+  bool AddOverlapping(StepScratch* scratch) const {
+    if (scratch->collision.face_points.empty()) return false;
+    scratch->steps.resize(kernels.size());
+    for (int i = 0; i < static_cast<int>(kernels.size()); ++i) {
+      const BodyVelocity &y = scratch->solver.velocity(i), &z = scratch->solver.correction(i);
+      scratch->steps[i].shift_W = config.dt * (y.v_W + z.v_W);
+      scratch->steps[i].turn_W = scratch->motions[i].R_WP *
+                                 kernels[i].inv_sqrt_I_P.cwiseProduct(config.dt * (y.w_P + z.w_P));
+    }
+    return CollisionScene::AddOverlapping(scratch->motions, scratch->steps, scratch->collision,
+                                          &scratch->contacts);
   }
 
   // Everything but the bodies, once they have moved.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "app/dynamics/convex.h"
@@ -208,6 +209,27 @@ double FindLowest(const Shape& shape, const RigidTransform& X_WB) {
   return lowest;
 }
 
+TEST(MotionTest, HullsOfManyCornersStopAtATableTheyFallOn) {
+  for (int seed = 0; seed < 60; ++seed) {
+    Rng rng(seed, RngStream::kTest, 10);
+    const Shape shape =
+        MakeRandomHull(rng, 50, Vector3(0.05, rng.Uniform(0.03, 0.05), rng.Uniform(0.01, 0.05)));
+    const RigidTransform X_WB = MakeTransform(rng.Rotation(), Vector3(0, 0, 0.08));
+    const World world(MakeScene(MakeMovable("hull", shape, X_WB, 0.3, rng.Uniform(0.1, 0.8))));
+    WorldState state = world.InitialState();
+    state.bodies[0].v_WB = Vector3(rng.Uniform(-1.0, 1.0), 0.0, -3.0);
+    state.bodies[0].w_WB = rng.Direction() * rng.Uniform(0.0, 8.0);
+    const MatrixX3& V = std::get<Mesh>(shape).mesh.V;
+    double lowest = 0.0;
+    for (int i = 0; i < 120; ++i) {
+      world.Step(state);
+      const Vector3 up_B = state.bodies[0].q_WB.conjugate() * Vector3::UnitZ();
+      lowest = std::min(lowest, state.bodies[0].p_WB.z() + (V * up_B).minCoeff());
+    }
+    EXPECT_GT(lowest, -5e-6) << "seed " << seed;
+  }
+}
+
 std::vector<Body> MakeBin(double half) {
   return {MakeTable(0.4), MakeFixed("w1", Box{Vector3(0.1, 1, 4)}, At(half + 0.05, 0, 2), 0.4),
           MakeFixed("w2", Box{Vector3(0.1, 1, 4)}, At(-half - 0.05, 0, 2), 0.4),
@@ -240,7 +262,7 @@ void DropInBin(int seed) {
   const BodyState& end = state.bodies[0];
   ASSERT_TRUE(end.p_WB.allFinite()) << what;
   EXPECT_LT(gained, 0.01 * start) << what;  // the gains of all steps together
-  EXPECT_GT(deepest, -5e-3) << what;        // in an impact at 3 m/s, which covers 13 mm in a step
+  EXPECT_GT(deepest, -1e-3) << what;        // in an impact at 3 m/s, which covers 13 mm in a step
   EXPECT_LT(end.p_WB.head<2>().cwiseAbs().maxCoeff(), half) << what;
   EXPECT_GT(FindLowest(shape, end.X_WB()), -1e-4) << what;
   if (!CanRoll(seed)) {

@@ -113,9 +113,9 @@ inline Shape MakeRandomHull(Rng& rng, int count, const Vector3& half) {
   return testing::MakeMesh(CalcConvexHull(P));
 }
 
-/// A box of 72 x 164 x 213 mm whose bottom is a crowd of corners within 20 um of z = 0: 30 to 60,
-/// of which the hull keeps those that show.
-inline Shape MakeBumpyBox(std::uint64_t seed) {
+/// A box of 72 x 164 x 213 mm whose bottom is a crowd of corners within 2 `bump` [m] of z = 0: 30
+/// to 60, of which the hull keeps those that show.
+inline Shape MakeBumpyBox(std::uint64_t seed, double bump) {
   Rng rng(seed);
   const Vector3 half(0.036, 0.082, 0.1065);
   const int count = 30 + static_cast<int>(30.0 * rng.Uniform());
@@ -123,7 +123,7 @@ inline Shape MakeBumpyBox(std::uint64_t seed) {
   for (int i = 0; i < count; ++i) {
     const double x = rng.Uniform(-1.0, 1.0), y = rng.Uniform(-1.0, 1.0);
     // Slightly hollow upwards, so that most corners are on the hull.
-    const double z = 7.5e-6 * (x * x + y * y) + rng.Uniform(0.0, 5e-6);
+    const double z = bump * (0.75 * (x * x + y * y) + rng.Uniform(0.0, 0.5));
     P.row(i) << half.x() * x, half.y() * y, z;
   }
   for (int i = 0; i < 4; ++i) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "app/dynamics/world.h"
@@ -48,21 +49,26 @@ TEST(StaticsTest, EveryKindOfShapeRestsWhereItIsPut) {
 }
 
 TEST(StaticsTest, ABumpyBottomNeitherCreepsNorTrembles) {
-  // As of a scanned box: dropped from 0.5 mm, it settles within a second.
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const World world(MakeScene(MakeMovable("scan", MakeBumpyBox(seed), At(0, 0, 0.0005), 0.3, 0.4),
-                                {MakeTable(0.4)}));
-    WorldState state = world.InitialState();
-    Simulate(world, 1.0, &state);
-    const BodyState start = state.bodies[0];
-    double spin = 0.0;
-    for (int i = 0; i < 1200; ++i) {
-      world.Step(state);
-      spin = std::max(spin, state.bodies[0].w_WB.norm());
+  // As of a scanned box: dropped from 0.5 mm, it settles within two seconds. Some stand on three
+  // corners of which two are near each other, and rock on those for long if anything feeds it.
+  for (const double bump : {2e-6, 1e-5, 5e-5, 2e-4}) {
+    for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+      const World world(
+          MakeScene(MakeMovable("scan", MakeBumpyBox(seed, bump), At(0, 0, 0.0005), 0.3, 0.4)));
+      WorldState state = world.InitialState();
+      Simulate(world, 2.0, &state);
+      const BodyState start = state.bodies[0];
+      double spin = 0.0;
+      for (int i = 0; i < 1200; ++i) {
+        world.Step(state);
+        spin = std::max(spin, state.bodies[0].w_WB.norm());
+      }
+      const std::string what =
+          "bumps of " + std::to_string(1e6 * bump) + " um, seed " + std::to_string(seed);
+      EXPECT_LT((state.bodies[0].p_WB - start.p_WB).norm(), 1e-6) << what;
+      EXPECT_LT(state.bodies[0].q_WB.angularDistance(start.q_WB), 1e-5) << what;
+      EXPECT_LT(spin, 1e-4) << what;
     }
-    EXPECT_LT((state.bodies[0].p_WB - start.p_WB).norm(), 5e-5) << "seed " << seed;
-    EXPECT_LT(state.bodies[0].q_WB.angularDistance(start.q_WB), 5e-4) << "seed " << seed;
-    EXPECT_LT(spin, 1e-3) << "seed " << seed;
   }
 }
 
