@@ -16,6 +16,7 @@ namespace {
 
 const Schema kSettleOptions{"SettleOptions", {"seconds"}};
 const Schema kSettleResult{"SettleResult", {"moved_mm", "rotated_deg", "at_rest", "body"}};
+const Schema kSimulateOptions{"SimulateOptions", {"trace"}};
 const Schema kRecordOptions{"RecordOptions", {"dir", "pictures"}};
 const Schema kShotOptions{"ShotOptions",
                           {"caption", "camera", "size", "quality", "overlay", "file"}};
@@ -36,10 +37,11 @@ struct Overlay {
 };
 constexpr Overlay kOverlays[] = {
     {"forces", &PictureConfig::forces},     {"cones", &PictureConfig::cones},
-    {"contacts", &PictureConfig::contacts}, {"ghost", &PictureConfig::ghost},
-    {"fingers", &PictureConfig::fingers},   {"axes", &PictureConfig::axes},
-    {"mesh", &PictureConfig::mesh},         {"scores", &PictureConfig::scores},
-    {"rollouts", &PictureConfig::rollouts}, {"hand", &PictureConfig::hand}};
+    {"contacts", &PictureConfig::contacts}, {"trace", &PictureConfig::trace},
+    {"ghost", &PictureConfig::ghost},       {"fingers", &PictureConfig::fingers},
+    {"axes", &PictureConfig::axes},         {"mesh", &PictureConfig::mesh},
+    {"scores", &PictureConfig::scores},     {"rollouts", &PictureConfig::rollouts},
+    {"hand", &PictureConfig::hand}};
 
 void ReadOverlays(const std::vector<std::string>& names, PictureConfig& config) {
   for (const Overlay& overlay : kOverlays) config.*overlay.flag = false;
@@ -71,6 +73,7 @@ ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::stri
   const Fields fields(L, index, kShotOptions, "", "", 1);
   ShotOptions options;
   PictureConfig& picture = options.shot.config;
+  picture.trace = true;
   options.shot.title = fields.Positional<std::optional<std::string>>(1, "title").value_or("");
   options.shot.caption = fields.Optional<std::string>("caption", "");
   options.file = fields.Find<std::string>("file");
@@ -134,6 +137,9 @@ namespace {
 struct SettleOptions {
   double seconds = 1.0;
 };
+struct SimulateOptions {
+  bool trace = false;
+};
 struct RecordOptions {
   std::string directory;
   PictureMode pictures = PictureMode::kKey;
@@ -151,6 +157,13 @@ template <>
 struct LuaValue<SettleOptions> {
   static SettleOptions Read(lua_State* L, int index, const std::string& /*path*/) {
     return {Fields(L, index, kSettleOptions).Optional<double>("seconds", 1.0)};
+  }
+};
+
+template <>
+struct LuaValue<SimulateOptions> {
+  static SimulateOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    return {Fields(L, index, kSimulateOptions).Optional<bool>("trace", false)};
   }
 };
 
@@ -191,8 +204,10 @@ Pushed SessionSettle(lua_State* L, Session& session, const SettleOptions& option
   return {1};
 }
 
-Pushed SessionSimulate(lua_State* L, const std::shared_ptr<Session>& session) {
-  PushObject(L, std::make_shared<LuaSimulation>(LuaSimulation{session, session->Simulate()}));
+Pushed SessionSimulate(lua_State* L, const std::shared_ptr<Session>& session,
+                       const SimulateOptions& options) {
+  PushObject(
+      L, std::make_shared<LuaSimulation>(LuaSimulation{session, session->Simulate(options.trace)}));
   return {1};
 }
 
@@ -259,7 +274,7 @@ const ClassInfo& SessionClass() {
   static const ClassInfo info{"Session",
                               {
                                   Method<&SessionSettle>("settle", "options"),
-                                  Method<&SessionSimulate>("simulate"),
+                                  Method<&SessionSimulate>("simulate", "options"),
                                   Method<&SessionRecord>("record", "options"),
                                   Method<&SessionBreakWhen>("break_when", "predicate"),
                                   Method<&SessionShot>("shot", "options"),
@@ -285,8 +300,8 @@ const ClassInfo& SessionClass() {
 }
 
 std::vector<const Schema*> SessionSchemas() {
-  return {&kSettleOptions, &kSettleResult, &kRecordOptions, &kShotOptions,
-          &kBody,          &kCloudOptions, &kMeshOptions};
+  return {&kSettleOptions, &kSettleResult, &kSimulateOptions, &kRecordOptions,
+          &kShotOptions,   &kBody,         &kCloudOptions,    &kMeshOptions};
 }
 
 }  // namespace pregrasp

@@ -17,6 +17,8 @@ const Schema kFinger{"Finger",
 const Schema kContact{"Contact",
                       {"a", "b", "p_W", "nhat_W", "f_W", "force_N", "gap_mm", "slip_speed"}};
 
+const Schema kStepTrace{"StepTrace", {"max_penetration_mm", "kinetic_J", "potential_J"}};
+
 struct TouchOptions {
   Finger finger = Finger::kIndex;
   Vector3 p_OC = Vector3::Zero();
@@ -189,6 +191,20 @@ Pushed SimContacts(lua_State* L, LuaSimulation& sim) {
   return {1};
 }
 
+Pushed SimTrace(lua_State* L, LuaSimulation& sim) {
+  const int last = sim.simulation->num_states() - 1;
+  if (!sim.simulation->traced() || last == 0) {
+    lua_pushnil(L);
+    return {1};
+  }
+  const StepTrace& trace = sim.simulation->trace_at(last);
+  RecordWriter(L, kStepTrace)
+      .Set("max_penetration_mm", 1e3 * trace.max_penetration)
+      .Set("kinetic_J", trace.kinetic_energy)
+      .Set("potential_J", trace.potential_energy);
+  return {1};
+}
+
 int SimToString(lua_State* L) {
   const auto sim = FindObject<LuaSimulation>(L, 1);
   const std::string text = sim ? fmt::format("Simulation({}, t = {:.3f} s)",
@@ -220,6 +236,7 @@ const ClassInfo& SimulationClass() {
                                   Property<&SimObject>("object"),
                                   Property<&SimFingers>("fingers"),
                                   Property<&SimContacts>("contacts"),
+                                  Property<&SimTrace>("trace"),
                               },
                               SimToString};
   return info;
@@ -227,7 +244,7 @@ const ClassInfo& SimulationClass() {
 
 std::vector<const Schema*> SimulationSchemas() {
   return {&kTouchOptions, &kMoveOptions, &kLiftOptions, &kWaitOptions,
-          &kFingers,      &kFinger,      &kContact};
+          &kFingers,      &kFinger,      &kContact,     &kStepTrace};
 }
 
 }  // namespace pregrasp

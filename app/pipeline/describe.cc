@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/pipeline/forces.h"
@@ -114,6 +115,18 @@ std::vector<std::string> DescribeStep(const World& world, const WorldState& befo
                                 support.slipping ? "slides" : "holds"));
   }
   return lines;
+}
+
+std::vector<std::string> DescribeTrace(const StepTrace& trace) {
+  double slip = 0.0;
+  for (const ContactPoint& contact : trace.contacts) {
+    if (contact.f_W.norm() > 1e-3) slip = std::max(slip, contact.v_slip_W.norm());
+  }
+  return {fmt::format("contact points\t{}, overlap {:.4f} mm at most", trace.contacts.size(),
+                      trace.max_penetration / kMillimetre),
+          fmt::format("fastest slip\t{:.2f} mm/s", slip / kMillimetre),
+          fmt::format("energy\t{:.3f} mJ of motion, {:.3f} mJ of height",
+                      1e3 * trace.kinetic_energy, 1e3 * trace.potential_energy)};
 }
 
 std::vector<std::string> DescribeScene(const Scene& scene) {

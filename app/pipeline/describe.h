@@ -17,6 +17,9 @@ std::vector<std::string> DescribeStep(const World& world, const WorldState& befo
                                       const WorldState& after,
                                       const std::vector<ContactPoint>& contacts);
 
+/// What one physics step did, in rows: overlap, slip, energy.
+std::vector<std::string> DescribeTrace(const StepTrace& trace);
+
 /// The scene in rows: what the object and its fingers are.
 std::vector<std::string> DescribeScene(const Scene& scene);
 

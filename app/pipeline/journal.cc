@@ -52,7 +52,8 @@ PictureText PictureDrawer::Caption(const JournalStep& step) const {
 void PictureDrawer::Draw(const JournalStep& step, const WorldState& start,
                          const std::filesystem::path& file) {
   if (!maker_) maker_ = std::make_unique<PictureMaker>(world_);
-  const PictureConfig config = step.shot ? step.shot->config : PictureConfig{};
+  PictureConfig config = step.shot ? step.shot->config : PictureConfig{};
+  config.trace = step.traced && (config.trace || !step.shot);
   const RenderScene scene =
       maker_->Compose(step.state, step.contacts, start, step.overlay.get(), Caption(step), config);
   WritePng(SharedRenderer().Render(scene, {config.width, config.height, config.quality}), file);
@@ -83,6 +84,9 @@ void JournalWriter::Finish(const std::vector<JournalStep>& journal, const WorldS
                            PictureDrawer& drawer, const RunOutcome& outcome) {
   while (next_ < journal.size()) Write(journal[next_], start, drawer);
   for (const WorldState& state : outcome.rollout) run_.AddRolloutRow(state);
+  if (!outcome.trace_table.empty()) {
+    WriteFile(run_.partial() / "trace.jsonl", outcome.trace_table);
+  }
   if (!outcome.motion_table.empty()) {
     WriteFile(run_.partial() / "motion.csv", outcome.motion_table);
   }

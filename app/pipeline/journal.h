@@ -25,7 +25,8 @@ struct JournalStep {
   StepRecord record;
   WorldState state;
   std::vector<ContactPoint> contacts;
-  std::vector<std::string> lines;                 ///< what happened and why
+  bool traced = false;             ///< pictures show the contacts' normals and forces
+  std::vector<std::string> lines;  ///< what happened and why
   std::shared_ptr<const PictureOverlay> overlay;  ///< what a planning stage adds; null for nothing
   bool key = false;                               ///< gets a picture in PictureMode::kKey
   /// A picture that was asked for.
@@ -40,6 +41,7 @@ struct JournalStep {
 /// What a run comes to beside its steps.
 struct RunOutcome {
   std::vector<WorldState> rollout;  ///< rollout.csv, every physics step
+  std::string trace_table;          ///< trace.jsonl, empty for none
   std::string motion_table;         ///< motion.csv, empty for none
   nlohmann::json summary;           ///< any of the fields of summary.json
   nlohmann::json configuration;     ///< for manifest.json

@@ -182,6 +182,21 @@ PictureOverlay Chosen(const PictureOverlay* overlay, const PictureConfig& config
   return chosen;
 }
 
+// At each contact point the normal and the force: where the object takes part, into it and on it,
+// else into and on the second body. Normals have one length, forces the pictures' scale.
+void AddContactArrows(RenderScene& scene, const std::vector<ContactPoint>& contacts,
+                      double metres_per_newton) {
+  constexpr double kNormalLength = 0.012;             // [m]
+  constexpr float kThin = 0.0005F, kThick = 0.0012F;  // [m]
+  for (const ContactPoint& contact : contacts) {
+    const double sign = contact.body_a == 0 ? -1.0 : 1.0;
+    scene.arrows.push_back(
+        {contact.p_WC, sign * kNormalLength * contact.nhat_W, kThin, NeutralColor()});
+    const Vector3 v_W = sign * metres_per_newton * contact.f_W;
+    if (v_W.norm() > 1e-3) scene.arrows.push_back({contact.p_WC, v_W, kThick, GoodColor()});
+  }
+}
+
 }  // namespace
 
 RenderScene PictureMaker::Compose(const WorldState& state,
@@ -204,6 +219,7 @@ RenderScene PictureMaker::Compose(const WorldState& state,
       scene.points.push_back({contact.p_WC, 0.0022F, NeutralColor()});
     }
   }
+  if (config.trace) AddContactArrows(scene, contacts, impl_->metres_per_newton);
   if (config.forces && overlay.forces) {
     const Body& object = impl_->world->scene().object();
     const Vector3 p_WBcm = state.bodies[0].X_WB() * object.mass_properties->p_BoBcm;

@@ -20,6 +20,7 @@ struct PictureConfig {
   bool forces = true;    ///< arrows of the fingers' forces and of the object's weight, with newtons
   bool cones = true;     ///< friction cones at the fingers
   bool contacts = true;  ///< where the object is supported
+  bool trace = false;    ///< normals and forces at all contact points
   bool ghost = true;     ///< the object at its start, once it has left it
   bool fingers = true;   ///< the fingers themselves
   bool axes = true;      ///< the world frame's axes at its origin

@@ -11,6 +11,7 @@
 #include "app/core/interrupt.h"
 #include "app/geometry/overlap.h"
 #include "app/pipeline/describe.h"
+#include "app/recording/trace_table.h"
 
 namespace pregrasp {
 namespace {
@@ -111,9 +112,23 @@ SettleResult Session::Settle(double seconds) {
   return result;
 }
 
-std::shared_ptr<Simulation> Session::Simulate() {
-  return std::make_shared<Simulation>(world_, start_, start_id_);
+std::shared_ptr<Simulation> Session::Simulate(bool traced) {
+  return std::make_shared<Simulation>(world_, start_, start_id_, traced);
 }
+
+namespace {
+
+// What the last physics step did, to the step's details and lines.
+void AddTrace(const Simulation& simulation, JournalStep* step) {
+  const int last = simulation.num_states() - 1;
+  if (!simulation.traced() || last == 0) return;
+  const StepTrace& trace = simulation.trace_at(last);
+  step->traced = true;
+  step->record.details["trace"] = TraceToJson(trace, simulation.world().scene());
+  for (std::string& line : DescribeTrace(trace)) step->lines.push_back(std::move(line));
+}
+
+}  // namespace
 
 JournalStep Session::StepOfAction() const {
   const WorldState& after = last_->state();
@@ -125,6 +140,7 @@ JournalStep Session::StepOfAction() const {
   step.record.details["rotated_deg"] = RadToDeg(motion.rotated);
   step.lines = DescribeStep(*world_, before_, after, last_->contacts());
   step.lines.insert(step.lines.begin(), what_);
+  AddTrace(*last_, &step);
   return step;
 }
 
@@ -207,6 +223,7 @@ JournalStep Session::StepOf(const Simulation& simulation) const {
       MakeStep(simulation.step_id(), "sim", simulation.state(), simulation.contacts());
   step.record.details = {{"action", "shot"}};
   step.lines = DescribeStep(*world_, start_, simulation.state(), simulation.contacts());
+  AddTrace(simulation, &step);
   return step;
 }
 
@@ -257,6 +274,9 @@ RunOutcome Session::OutcomeOfSimulation() const {
   RunOutcome outcome;
   if (last_) {
     for (int i = 0; i < last_->num_states(); ++i) outcome.rollout.push_back(last_->state_at(i));
+    for (int i = 1; last_->traced() && i < last_->num_states(); ++i) {
+      outcome.trace_table += TraceRow(last_->trace_at(i), last_->state_at(i).t, scene());
+    }
   } else {
     outcome.rollout.push_back(start_);
   }
@@ -273,6 +293,7 @@ void Session::Finish(JournalWriter& writer, const std::optional<std::string>& st
     // Before a trajectory is certified, the simulation is still what rollout.csv shows.
     if (outcome.rollout.empty()) {
       outcome.rollout = simulated.rollout;
+      outcome.trace_table = simulated.trace_table;
       outcome.summary["physics"] = simulated.summary["physics"];
     }
   }

@@ -53,8 +53,9 @@ class Session {
   /// @throws InputError once something was simulated: its past begins at the start.
   SettleResult Settle(double seconds);
 
-  /// A simulation from the start.
-  std::shared_ptr<Simulation> Simulate();
+  /// A simulation from the start. Where it is traced, its steps and their pictures tell what the
+  /// last physics step did, and the run directory has trace.jsonl.
+  std::shared_ptr<Simulation> Simulate(bool traced = false);
 
   // What can be done to a simulation, each as one step of the journal. An interrupt ends an action
   // early: what was done is a step, and Interrupted goes on.

@@ -9,29 +9,41 @@
 #include "app/core/text.h"
 
 namespace pregrasp {
+namespace {
 
-Simulation::Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id)
-    : world_(std::move(world)), action_id_(std::move(step_id)) {
+constexpr double kMaxTarget = 1000.0;  // [m], of a coordinate: ten times the largest shape
+
+}  // namespace
+
+Simulation::Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id,
+                       bool traced)
+    : world_(std::move(world)), action_id_(std::move(step_id)), traced_(traced) {
   past_.push_back(std::make_shared<const Moment>(Moment{std::move(start), {}, action_id_}));
 }
 
 double Simulation::CalcMaxPenetration() const {
   double deepest = 0.0;
   for (const auto& moment : past_) {
-    for (const ContactPoint& contact : moment->contacts) deepest = std::max(deepest, -contact.phi);
+    for (const ContactPoint& contact : moment->trace.contacts) {
+      deepest = std::max(deepest, -contact.phi);
+    }
   }
   return deepest;
 }
 
 void Simulation::ReplaceState(WorldState state) {
   past_.back() =
-      std::make_shared<const Moment>(Moment{std::move(state), past_.back()->contacts, action_id_});
+      std::make_shared<const Moment>(Moment{std::move(state), past_.back()->trace, action_id_});
 }
 
 void Simulation::StepOnce(WorldState state) {
   ThrowIfInterrupted();
   Moment next{std::move(state), {}, action_id_};
-  world_->Step(next.state, &next.contacts);
+  if (traced_) {
+    next.trace = world_->StepWithTrace(next.state);
+  } else {
+    world_->Step(next.state, &next.trace.contacts);
+  }
   past_.push_back(std::make_shared<const Moment>(std::move(next)));
 }
 
@@ -70,6 +82,10 @@ void Simulation::Move(Finger finger, const Vector3& p_WTarget, double seconds) {
   }
   if (!(seconds > 0.0)) {
     throw InputError("", "seconds", "a time above 0 s", FormatDouble(seconds));
+  }
+  if (!(p_WTarget.cwiseAbs().maxCoeff() <= kMaxTarget)) {
+    throw InputError("", "target", fmt::format("a point within {} m", kMaxTarget),
+                     FormatDouble(p_WTarget.cwiseAbs().maxCoeff()) + " m");
   }
   const int steps = std::max(1, StepsIn(seconds));
   RequireRoom(steps);

@@ -15,17 +15,25 @@ class Simulation {
   /// The longest past that is kept [s]; about 3 kB a step.
   static constexpr double kMaxSeconds = 300.0;
 
-  Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id);
+  /// @param traced  whether each step also tells its energies, which takes ten times as long.
+  Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id,
+             bool traced = false);
 
   const World& world() const { return *world_; }
   const WorldState& state() const { return past_.back()->state; }
   /// The contact points of the step that led here; none at the start.
-  const std::vector<ContactPoint>& contacts() const { return past_.back()->contacts; }
+  const std::vector<ContactPoint>& contacts() const { return past_.back()->trace.contacts; }
   /// Every physics step from the start to now, the start included.
   int num_states() const { return static_cast<int>(past_.size()); }
   const WorldState& state_at(int index) const { return past_[index]->state; }
   /// Of the step that led there.
-  const std::vector<ContactPoint>& contacts_at(int index) const { return past_[index]->contacts; }
+  const std::vector<ContactPoint>& contacts_at(int index) const {
+    return past_[index]->trace.contacts;
+  }
+
+  bool traced() const { return traced_; }
+  /// What the step that led there did, if this simulation is traced and `index` is not the start.
+  const StepTrace& trace_at(int index) const { return past_[index]->trace; }
 
   /// The deepest overlap of two bodies before any of the past steps [m].
   double CalcMaxPenetration() const;
@@ -40,7 +48,8 @@ class Simulation {
   void Lift(Finger finger);
 
   /// Moves where the finger's spring pulls, evenly over `seconds`, to p_WTarget.
-  /// @throws InputError if the finger is off, or seconds are not above 0; Interrupted, as Step.
+  /// @throws InputError if the finger is off, seconds are not above 0, or the target is not within
+  /// 1000 m; Interrupted, as Step.
   void Move(Finger finger, const Vector3& p_WTarget, double seconds);
 
   /// Physics steps with the targets where they are.
@@ -56,7 +65,7 @@ class Simulation {
  private:
   struct Moment {
     WorldState state;
-    std::vector<ContactPoint> contacts;
+    StepTrace trace;  ///< its contacts alone where the simulation is not traced
     std::string step_id;
   };
 
@@ -67,6 +76,7 @@ class Simulation {
   std::shared_ptr<const World> world_;
   std::vector<std::shared_ptr<const Moment>> past_;
   std::string action_id_;
+  bool traced_;
 };
 
 }  // namespace pregrasp

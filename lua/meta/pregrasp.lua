@@ -8,7 +8,7 @@
 
 ---@alias Vector3 number[] {x, y, z}
 ---@alias FingerName "thumb"|"index"|"middle"|"ring"|"little"
----@alias Overlay "forces"|"cones"|"contacts"|"ghost"|"fingers"|"axes"|"mesh"|"scores"|"rollouts"|"hand"
+---@alias Overlay "forces"|"cones"|"contacts"|"trace"|"ghost"|"fingers"|"axes"|"mesh"|"scores"|"rollouts"|"hand"
 
 ---@class pregrasp
 ---@field version string the program's version
@@ -150,8 +150,12 @@ function Session:settle(options) end
 ---@field body string that moved furthest
 
 ---A simulation from the start, to be stepped by hand.
+---@param options? SimulateOptions
 ---@return Simulation
-function Session:simulate() end
+function Session:simulate(options) end
+
+---@class SimulateOptions
+---@field trace? boolean every step tells its energies too: in `trace`, in the log, in pictures, and step by step in trace.jsonl; false
 
 ---From now on every step goes to a run directory: its log pair, and pictures of the start and of each
 ---shot{} ("key"), of every step ("all"), or none. It is finished by save(), or at the script's end.
@@ -682,6 +686,7 @@ function Frame:shot(options) end
 ---@field object Body
 ---@field fingers Fingers
 ---@field contacts Contact[] of the last physics step
+---@field trace StepTrace? of the last physics step; nil unless simulate{ trace = true }
 local Simulation = {}
 
 ---Puts a finger on the object, at the surface point nearest to p_OC, without force yet.
@@ -762,6 +767,11 @@ function Simulation:body(name) end
 ---@field p_WF Vector3 the fingertip point
 ---@field p_WTarget Vector3 where its spring pulls
 ---@field f_W Vector3 force on the object [N]
+
+---@class StepTrace
+---@field max_penetration_mm number largest overlap before the step
+---@field kinetic_J number of all movable bodies after the step
+---@field potential_J number in the scene's gravity, 0 at the world's origin
 
 ---@class Contact
 ---@field a string a body's name

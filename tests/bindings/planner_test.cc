@@ -334,7 +334,7 @@ TEST_F(PlannerScriptTest, WhatMakesNoSenseIsOneLine) {
       {"local s = session() graph(s) s:graph{ points = 256 }",
        "graph: points: expected 128, as in the first graph, got 256"},
       {"graph():shot{ overlay = { 'meshes' } }",
-       "shot: overlay: expected some of forces, cones, contacts, ghost, fingers, axes, mesh, "},
+       "shot: overlay: expected some of forces, cones, contacts, trace, ghost, fingers, axes, "},
       {"pruned():paths()[0]()", "[]: number: expected 1 to 100000, got 0"},
   };
   for (const auto& [line, expected] : cases) {

@@ -92,6 +92,18 @@ TEST(SimulationBindingTest, APushMovesTheObjectAndGivesItsForces) {
             "true\ttrue\tfalse\n0.50\ntrue\ttrue\tsim.3\ttrue\nfalse\n");
 }
 
+TEST(SimulationBindingTest, TellsOverlapAndEnergiesWhereATraceIsAskedFor) {
+  EXPECT_EQ(Script(R"(
+    local s = open()
+    print(s:simulate().trace, s:simulate{ trace = true }.trace)
+    local sim = s:simulate{ trace = true }
+    sim:step(240)
+    print(("%.4f"):format(sim.trace.potential_J / 9.81 / sim.object.p[3]), sim.trace.kinetic_J < 1e-9)
+    print(sim.trace.max_penetration_mm < 0.05)
+    local plain = s:simulate() plain:step() print(plain.trace))"),
+            "nil\tnil\n0.4000\ttrue\ntrue\nnil\n");
+}
+
 TEST(SimulationBindingTest, GoesBackExactlyAndForksGoTheirOwnWay) {
   EXPECT_EQ(Script(R"(
     local sim = open():simulate()
@@ -269,7 +281,8 @@ TEST(SessionBindingTest, WrongCallsSayWhatWasExpected) {
        "settle: seconds: expected above 0 and at most 300 s, got -1"},
       {"open():settle(1)", "settle: expected a table with seconds = .. and so on, got 1"},
       {"open():settle({}, 2)", "settle: expected (options), got 2 arguments"},
-      {"open():simulate(1)", "simulate: expected no arguments, got 1 arguments"},
+      {"open():simulate(1)", "simulate: expected a table with trace = .. and so on, got 1"},
+      {"open():simulate():fork(1)", "fork: expected no arguments, got 1 arguments"},
       {"open():simulate():touch{ finger = 'toe', p_OC = {0, 0, 0} }",
        "touch: finger: expected a finger (thumb, index, middle, ring or little), got \"toe\""},
       {"open():simulate():touch{ finger = 'index' }",
@@ -292,7 +305,7 @@ TEST(SessionBindingTest, WrongCallsSayWhatWasExpected) {
       {"open():shot{ quality = 'best' }",
        "shot: quality: expected \"draft\", \"normal\" or \"still\", got \"best\""},
       {"open():shot{ overlay = {'force'} }",
-       "shot: overlay: expected some of forces, cones, contacts, ghost, fingers, axes, mesh, "},
+       "shot: overlay: expected some of forces, cones, contacts, trace, ghost, fingers, axes, "},
       {"open():shot{ size = {1, 2, 3} }",
        "shot: size: expected {width, height} in pixels, got a table"},
       {"open():save()", "save: dir: expected a folder, as nothing is recorded, got nothing"},

@@ -43,6 +43,21 @@ TEST(PictureMakerTest, ShowsEveryBodyTheFingerItsForceAndWhereTheObjectWas) {
   EXPECT_EQ(scene.labels[1].text, "weight 0.25 N");
 }
 
+TEST(PictureMakerTest, ATraceShowsTheNormalOfEveryContactPointAndTheForcesOnTheObject) {
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  const Simulation sim = MakePulled(world);
+  PictureConfig config;
+  config.trace = true;
+  config.forces = false;
+  const RenderScene scene = PictureMaker(world).Compose(sim.state(), sim.contacts(),
+                                                        world->InitialState(), nullptr, {}, config);
+  ASSERT_GE(sim.contacts().size(), 4U);
+  EXPECT_GE(scene.arrows.size(), sim.contacts().size());
+  for (const RenderArrow& arrow : scene.arrows) {
+    EXPECT_GT(arrow.v_W.z(), 0.0);  // the table pushes upwards
+  }
+}
+
 TEST(PictureMakerTest, OverlaysCanBeLeftOut) {
   const auto world = std::make_shared<const World>(MakeRulerScene());
   const Simulation sim = MakePulled(world);

@@ -115,6 +115,41 @@ TEST_F(SessionTest, TheSummaryHoldsTheDeepestOverlapOfAllPhysicsSteps) {
   EXPECT_GT(summary["seconds"]["total"], 0.0);
 }
 
+TEST_F(SessionTest, ATracedSimulationLeavesEveryPhysicsStepAndItsLastOneInTheSteps) {
+  Session session(MakeRulerScene(), {});
+  const auto sim = session.Simulate(true);
+  Pull(session, sim);
+  session.Save(folder_ / "run");
+  EXPECT_EQ(CountLines(folder_ / "run/trace.jsonl"), sim->num_states() - 1);
+  std::ifstream in(folder_ / "run/trace.jsonl");
+  double weight = 0.0;
+  nlohmann::json row;
+  for (std::string line; std::getline(in, line);) {
+    row = nlohmann::json::parse(line);
+    ASSERT_GT(row["t"], 0.0);
+    weight = 0.0;
+    for (const auto& contact : row["contacts"]) {
+      EXPECT_EQ(contact["a"], "ruler");
+      EXPECT_EQ(contact["b"], "table");
+      EXPECT_EQ(contact["nhat_W"][2], -1.0);
+      weight -= contact["f_W"][2].get<double>();
+    }
+  }
+  // At the end the table carries the ruler and what the finger presses.
+  EXPECT_NEAR(weight, 0.025 * 9.81 - sim->state().fingers[1].f_W.z(), 1e-3);
+  const auto last = LoadRun(folder_ / "run").steps.back().details["trace"];
+  row.erase("t");
+  EXPECT_EQ(last, row);
+}
+
+TEST_F(SessionTest, WithoutATraceTheRunHasNone) {
+  Session session(MakeRulerScene(), {});
+  Pull(session, session.Simulate());
+  session.Save(folder_ / "run");
+  EXPECT_FALSE(fs::exists(folder_ / "run/trace.jsonl"));
+  EXPECT_FALSE(LoadRun(folder_ / "run").steps.back().details.contains("trace"));
+}
+
 TEST_F(SessionTest, AnInterruptedActionIsAStepAndTheRunIsValid) {
   Session session(MakeRulerScene(), {});
   session.Record(folder_ / "run", PictureMode::kNone);

@@ -84,6 +84,24 @@ TEST(SimulationTest, RefusesWhatMakesNoSense) {
   EXPECT_THROW(sim.StepsIn(-1.0), InputError);
   sim.Touch(Finger::kIndex, {0, 0, 0.0015});
   EXPECT_THROW(sim.Move(Finger::kIndex, Vector3::Zero(), 0.0), InputError);
+  EXPECT_THROW(sim.Move(Finger::kIndex, Vector3(1e300, 0.0, 0.0), 1.0), InputError);
+}
+
+TEST(SimulationTest, ATracedOneTakesTheSameStepsAndTellsTheirEnergies) {
+  const auto world = std::make_shared<const World>(MakeRulerScene());
+  Simulation plain(world, world->InitialState(), "scene.start");
+  Simulation traced(world, world->InitialState(), "scene.start", true);
+  for (Simulation* sim : {&plain, &traced}) {
+    sim->Touch(Finger::kIndex, {0.11, 0, 0.0015});
+    sim->Move(Finger::kIndex, Vector3(-0.03, 0, -0.01), 0.5);
+  }
+  EXPECT_TRUE(SameState(plain.state(), traced.state()));
+  ASSERT_EQ(plain.contacts().size(), traced.contacts().size());
+  const int last = traced.num_states() - 1;
+  const double energy =
+      traced.trace_at(last).kinetic_energy + traced.trace_at(last).potential_energy;
+  EXPECT_NEAR(energy, world->CalcEnergy(traced.state()), 1e-15);
+  EXPECT_GT(traced.trace_at(last).kinetic_energy, 0.0);
 }
 
 TEST(SimulationTest, AnInterruptKeepsWhatWasStepped) {
