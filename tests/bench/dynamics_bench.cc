@@ -1,4 +1,5 @@
 // Rollout/SCENE/ENGINE: two simulated seconds of contact, beside the engines that people know.
+// Batch/SCENE/threads:N: 64 such rollouts on N threads.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -63,6 +64,21 @@ void Rollout(benchmark::State& state, const DynamicsCase& c, std::size_t engine)
                              valid ? "" : "INVALID: ", c.quantity, value, c.expected, c.tolerance));
 }
 
+// `speedup` needs a machine that does nothing else; `cpu_over_1`, the processor time over that of
+// one thread, tells what the threads cost each other on any machine.
+void Batch(benchmark::State& state, const DynamicsCase& c, int threads) {
+  BatchRun one, many;
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+    const BatchRun run_one = RunPregraspBatch(c, 1), run_many = RunPregraspBatch(c, threads);
+    if (repetition == 0 || run_one.wall_seconds < one.wall_seconds) one = run_one;
+    if (repetition == 0 || run_many.wall_seconds < many.wall_seconds) many = run_many;
+  }
+  for (auto _ : state) state.SetIterationTime(many.wall_seconds);
+  state.counters["speedup"] = one.wall_seconds / many.wall_seconds;
+  state.counters["cpu_over_1"] = many.cpu_seconds / one.cpu_seconds;
+  if (many.p_WO != one.p_WO) state.SetLabel("INVALID: the ends are not those of one thread");
+}
+
 }  // namespace
 }  // namespace pregrasp
 
@@ -70,13 +86,19 @@ int main(int argc, char** argv) {
   using namespace pregrasp;
   for (const DynamicsCase& c : MakeDynamicsCases()) {
     for (std::size_t engine = 0; engine < kEngines.size(); ++engine) {
-      const std::string name = std::string("Rollout/") + c.name + "/" + kEngines[engine];
+      const std::string name = fmt::format("Rollout/{}/{}", c.name, kEngines[engine]);
       benchmark::RegisterBenchmark(
           name.c_str(), [c, engine](benchmark::State& state) { Rollout(state, c, engine); })
           ->UseManualTime()
           ->Iterations(1)
           ->Unit(benchmark::kMillisecond);
     }
+    if (c.name != "slot" && c.name != "shelf5") continue;
+    benchmark::RegisterBenchmark(fmt::format("Batch/{}/threads:2", c.name).c_str(),
+                                 [c](benchmark::State& state) { Batch(state, c, 2); })
+        ->UseManualTime()
+        ->Iterations(1)
+        ->Unit(benchmark::kMillisecond);
   }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

@@ -49,6 +49,14 @@ EngineRun RunBullet(const DynamicsCase& c, int iterations);
 /// MuJoCo with its default solver, cone and time step of 2 ms.
 EngineRun RunMujoco(const DynamicsCase& c);
 
+/// What a batch of rollouts of a case took on `threads` threads, each with its own target.
+struct BatchRun {
+  double wall_seconds = 0.0;
+  double cpu_seconds = 0.0;   ///< of all threads
+  std::vector<Vector3> p_WO;  ///< where each rollout ended
+};
+BatchRun RunPregraspBatch(const DynamicsCase& c, int threads);
+
 /// CPU time of this thread [s].
 double ThreadCpuSeconds();
 
