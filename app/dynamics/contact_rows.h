@@ -119,15 +119,16 @@ class RelativeVelocity {
     start_ = {v_t_, v_n_};
   }
 
-  double GetNormal(const PointRows& point) const {
-    const double v = v_n_ + first_.AlongNormal(point.first);
-    if constexpr (kTwo) return v + second_.AlongNormal(point.second);
+  /// Velocity along the normal, on top of `bias`.
+  double GetNormal(const PointRows& point, double bias = 0.0) const {
+    const double v = first_.AddNormal(point.first, bias + v_n_);
+    if constexpr (kTwo) return second_.AddNormal(point.second, v);
     return v;
   }
 
   Vector2 GetSlip(const PointRows& point) const {
-    const Vector2 v = v_t_ + first_.AlongTangents(point.first);
-    if constexpr (kTwo) return v + second_.AlongTangents(point.second);
+    const Vector2 v = first_.AddTangents(point.first, v_t_);
+    if constexpr (kTwo) return second_.AddTangents(point.second, v);
     return v;
   }
 
@@ -165,9 +166,12 @@ class RelativeVelocity {
 
     Turn() = default;
     explicit Turn(const Vector3& w) : x(w.x()), y(w.y()), z(w.z()) {}
-    double AlongNormal(const PointArms& A) const { return A.n[0] * x + A.n[1] * y + A.n[2] * z; }
-    Vector2 AlongTangents(const PointArms& A) const {
-      return A.t.col(0) * x + A.t.col(1) * y + A.t.col(2) * z;
+    // v plus the velocity along rows A. In pairs, which a processor adds at the same time.
+    double AddNormal(const PointArms& A, double v) const {
+      return (v + A.n[0] * x) + (A.n[1] * y + A.n[2] * z);
+    }
+    Vector2 AddTangents(const PointArms& A, const Vector2& v) const {
+      return (v + A.t.col(0) * x) + (A.t.col(1) * y + A.t.col(2) * z);
     }
     void Add(const PointArms& A, double d) {
       x += A.n[0] * d;

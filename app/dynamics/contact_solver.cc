@@ -41,7 +41,8 @@ template <typename Velocity>
   if (next.squaredNorm() > limit * limit) {
     next = old - point.inv_K_t_max * slip;
     const double norm2 = next.squaredNorm();
-    if (norm2 > limit * limit) next *= limit / std::sqrt(norm2);
+    // Root and quotient at the same time, where limit / sqrt(norm2) would wait for one another.
+    if (norm2 > limit * limit) next *= (limit / norm2) * std::sqrt(norm2);
   }
   const Vector2 d = next - old;
   point.lambda.t = next;
@@ -72,14 +73,14 @@ template <typename Velocity>
 [[gnu::always_inline]] inline double SweepPair(const PointPair& pair, const ContactRows& rows,
                                                Velocity& v) {
   PointRows& a = rows.points[pair.a];
-  const double v_a = a.bias + v.GetNormal(a);
+  const double v_a = v.GetNormal(a, a.bias);
   if (pair.b < 0) {
     const double change = SetNormalImpulse(std::max(0.0, a.lambda.n - v_a * a.inv_K_n), a, v);
     return std::max(change, SweepFriction(rows.friction, a, v));
   }
   PointRows& b = rows.points[pair.b];
   double lambda_a = 0.0, lambda_b = 0.0;
-  SolveNormalPair(pair, a, b, v_a, b.bias + v.GetNormal(b), &lambda_a, &lambda_b);
+  SolveNormalPair(pair, a, b, v_a, v.GetNormal(b, b.bias), &lambda_a, &lambda_b);
   const double d_a = SetNormalImpulse(lambda_a, a, v), d_b = SetNormalImpulse(lambda_b, b, v);
   const double normal = std::max(d_a, d_b);
   const double friction_a = SweepFriction(rows.friction, a, v);
@@ -104,7 +105,7 @@ double SweepCorrections(const ContactRows& rows, BodyVelocity* z) {
   return VisitRelativeVelocity(rows, z, [&](auto v) {
     double change = 0.0;
     for (PointRows& point : rows.points) {
-      const double v_n = point.correction_bias + v.GetNormal(point);
+      const double v_n = v.GetNormal(point, point.correction_bias);
       const double correction = std::max(0.0, point.correction - v_n * point.inv_K_n);
       const double d = correction - point.correction;
       point.correction = correction;
