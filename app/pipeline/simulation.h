@@ -15,7 +15,8 @@ class Simulation {
   /// The longest past that is kept [s]; about 3 kB a step.
   static constexpr double kMaxSeconds = 300.0;
 
-  /// @param traced  whether each step also tells its energies, which takes ten times as long.
+  /// @param traced  whether each step also tells its energies, for which it takes up to ten times
+  /// as long.
   Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id,
              bool traced = false);
 
