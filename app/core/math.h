@@ -37,24 +37,14 @@ inline RigidTransform MakeTransform(const Quaternion& q_AB, const Vector3& p_AB)
 }
 
 /// Points given in B, one a row, in A.
-inline MatrixX3 TransformPoints(const RigidTransform& X_AB, const MatrixX3& P_B) {
-  return (P_B * X_AB.linear().transpose()).rowwise() + X_AB.translation().transpose();
-}
+MatrixX3 TransformPoints(const RigidTransform& X_AB, const MatrixX3& P_B);
 
 /// Rotation from roll, pitch, yaw about the fixed x, y and z axes [rad]: R = Rz(yaw) Ry(pitch)
 /// Rx(roll).
-inline Matrix3 RotationFromRpy(const Vector3& rpy) {
-  return (Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) *
-          Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Vector3::UnitX()))
-      .toRotationMatrix();
-}
+Matrix3 RotationFromRpy(const Vector3& rpy);
 
 /// The angle [rad, 0..pi] of the rotation that takes A to B.
-inline double RotationAngle(const Matrix3& R_WA, const Matrix3& R_WB) {
-  const Quaternion q(Matrix3(R_WA.transpose() * R_WB));
-  return 2.0 * std::atan2(q.vec().norm(), std::abs(q.w()));
-}
+double RotationAngle(const Matrix3& R_WA, const Matrix3& R_WB);
 
 /// An orthonormal right-handed frame whose z axis is `nhat` (unit length); x and y are a
 /// deterministic function of it (Duff et al., "Building an orthonormal basis, revisited", JCGT
