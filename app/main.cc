@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -27,13 +28,14 @@ int Run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   app.set_help_flag("-h,--help", "This text");
   app.footer("Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of ours.");
+  const Command command(app);
   Action action;
-  AddCheck(app, action);
-  AddDataset(app, action);
-  AddInfo(app, action);
-  AddRepl(app, action);
-  AddRun(app, action);
-  AddScript(app, action);
+  AddCheck(command, action);
+  AddDataset(command, action);
+  AddInfo(command, action);
+  AddRepl(command, action);
+  AddRun(command, action);
+  AddScript(command, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

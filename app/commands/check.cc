@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "app/commands/commands.h"
-#include "app/commands/seed_option.h"
 #include "app/core/text.h"
 #include "app/core/thread_pool.h"
 #include "app/pipeline/start_verdict.h"
@@ -55,17 +54,16 @@ int Check(const CheckOptions& options) {
 
 }  // namespace
 
-void AddCheck(CLI::App& app, Action& action) {
+void AddCheck(const Command& app, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.AddCommand(
       "check", "Check a scene: overlaps, not at rest, implausible units, rules, graspable already");
-  command->add_option("SCENE", options->scene, "The scene, a Lua file")->required();
-  command->add_option("--set", options->settings, "Change a value: object.mass=0.2")
-      ->allow_extra_args(false);
-  AddSeedOption(*command, options->seed, "Of the search for grasps");
-  command->add_flag("--no-grasps", options->no_grasps,
-                    "Do not ask whether the object can be grasped where it stands");
-  command->callback([options, &action] { action = [options] { return Check(*options); }; });
+  command.Add("SCENE", options->scene, "The scene, a Lua file").Required();
+  command.Add("--set", options->settings, "Change a value: object.mass=0.2").OneAtATime();
+  command.AddSeed(options->seed, "Of the search for grasps");
+  command.AddFlag("--no-grasps", options->no_grasps,
+                  "Do not ask whether the object can be grasped where it stands");
+  command.OnChosen([options, &action] { action = [options] { return Check(*options); }; });
 }
 
 }  // namespace pregrasp

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "app/commands/command.h"
 
 namespace pregrasp {
 
@@ -9,11 +10,11 @@ namespace pregrasp {
 using Action = std::function<int()>;
 
 // One subcommand each: describes its options to `app`, and sets `action` when it was chosen.
-void AddCheck(CLI::App& app, Action& action);
-void AddDataset(CLI::App& app, Action& action);
-void AddInfo(CLI::App& app, Action& action);
-void AddRepl(CLI::App& app, Action& action);
-void AddRun(CLI::App& app, Action& action);
-void AddScript(CLI::App& app, Action& action);
+void AddCheck(const Command& app, Action& action);
+void AddDataset(const Command& app, Action& action);
+void AddInfo(const Command& app, Action& action);
+void AddRepl(const Command& app, Action& action);
+void AddRun(const Command& app, Action& action);
+void AddScript(const Command& app, Action& action);
 
 }  // namespace pregrasp

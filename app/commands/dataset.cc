@@ -12,7 +12,6 @@
 
 #include "app/commands/dataset.h"
 #include "app/commands/progress.h"
-#include "app/commands/seed_option.h"
 #include "app/core/error.h"
 #include "app/geometry/point_cloud.h"
 #include "app/training/dataset_run.h"
@@ -81,48 +80,43 @@ int MakeLabels(MakeOptions& options) {
   return 0;
 }
 
-void AddMakeOptions(CLI::App& command, MakeOptions& options) {
-  command.add_option("--out", options.run.folder, "Folder for the items, one file each")
-      ->required();
-  command.add_option("--items", options.run.items, "Objects in the whole data set")
-      ->capture_default_str();
-  command.add_option("--shard", options.shard, "i/n: make every n-th item, from the i-th")
-      ->capture_default_str();
-  command.add_option("--threads", options.run.threads, "Threads; 0 is one per processor")
-      ->capture_default_str();
+void AddMakeOptions(const Command& command, MakeOptions& options) {
+  command.Add("--out", options.run.folder, "Folder for the items, one file each").Required();
+  command.Add("--items", options.run.items, "Objects in the whole data set").ShowDefault();
+  command.Add("--shard", options.shard, "i/n: make every n-th item, from the i-th").ShowDefault();
+  command.Add("--threads", options.run.threads, "Threads; 0 is one per processor").ShowDefault();
   options.items.AddTo(command);
 }
 
-void AddGrasps(CLI::App& dataset, Action& action) {
+void AddGrasps(const Command& dataset, Action& action) {
   auto options = std::make_shared<MakeOptions>();
-  CLI::App* command =
-      dataset.add_subcommand("grasps",
-                             "Grow feasible grasps on random objects; goes on where an "
-                             "earlier run was cut off");
-  AddMakeOptions(*command, *options);
-  command->callback([options, &action] { action = [options] { return MakeGrasps(*options); }; });
+  const Command command =
+      dataset.AddCommand("grasps",
+                         "Grow feasible grasps on random objects; goes on where an "
+                         "earlier run was cut off");
+  AddMakeOptions(command, *options);
+  command.OnChosen([options, &action] { action = [options] { return MakeGrasps(*options); }; });
 }
 
-void AddLabels(CLI::App& dataset, Action& action) {
+void AddLabels(const Command& dataset, Action& action) {
   auto options = std::make_shared<MakeOptions>();
-  CLI::App* command = dataset.add_subcommand(
+  const Command command = dataset.AddCommand(
       "labels", "Label contacts with the share of feasible completions; goes on likewise");
-  command->add_option("GRASPS", options->grasps, "Merged data set of grasps")->required();
-  command->add_option("--generator", options->generator, "Weights of the grasp generators")
-      ->required();
-  AddMakeOptions(*command, *options);
-  options->items.AddLabelsTo(*command);
-  command->callback([options, &action] { action = [options] { return MakeLabels(*options); }; });
+  command.Add("GRASPS", options->grasps, "Merged data set of grasps").Required();
+  command.Add("--generator", options->generator, "Weights of the grasp generators").Required();
+  AddMakeOptions(command, *options);
+  options->items.AddLabelsTo(command);
+  command.OnChosen([options, &action] { action = [options] { return MakeLabels(*options); }; });
 }
 
-void AddMerge(CLI::App& dataset, Action& action) {
+void AddMerge(const Command& dataset, Action& action) {
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* command =
-      dataset.add_subcommand("merge", "Put the items of shards together, for pregrasp-train");
-  command->add_option("FOLDERS", options->folders, "Where the items were made")->required();
-  command->add_option("--items", options->items, "Take items 0 to this less 1")->required();
-  command->add_option("--out", options->out, "Folder of the merged data set")->required();
-  command->callback([options, &action] {
+  const Command command =
+      dataset.AddCommand("merge", "Put the items of shards together, for pregrasp-train");
+  command.Add("FOLDERS", options->folders, "Where the items were made").Required();
+  command.Add("--items", options->items, "Take items 0 to this less 1").Required();
+  command.Add("--out", options->out, "Folder of the merged data set").Required();
+  command.OnChosen([options, &action] {
     action = [options] {
       if (options->items < 1) {
         throw InputError("--items", "", "at least 1", std::to_string(options->items));
@@ -135,19 +129,17 @@ void AddMerge(CLI::App& dataset, Action& action) {
 
 }  // namespace
 
-void ItemOptions::AddTo(CLI::App& command) {
-  command.add_option("--scenes", config.scenes, "Scenes of each object")->capture_default_str();
-  AddSeedOption(command, config.seed, "Seed of everything random");
-  command.add_option("--exclude", excluded,
-                     "Scenes whose objects no training object may resemble; without this option, "
-                     "all evaluation scenes");
+void ItemOptions::AddTo(const Command& command) {
+  command.Add("--scenes", config.scenes, "Scenes of each object").ShowDefault();
+  command.AddSeed(config.seed, "Seed of everything random");
+  command.Add("--exclude", excluded,
+              "Scenes whose objects no training object may resemble; without this option, "
+              "all evaluation scenes");
 }
 
-void ItemOptions::AddLabelsTo(CLI::App& command) {
-  command.add_option("--labels", config.labels.per_scene, "Labels of each scene")
-      ->capture_default_str();
-  command.add_option("--tries", config.labels.tries, "Completions at each relief")
-      ->capture_default_str();
+void ItemOptions::AddLabelsTo(const Command& command) {
+  command.Add("--labels", config.labels.per_scene, "Labels of each scene").ShowDefault();
+  command.Add("--tries", config.labels.tries, "Completions at each relief").ShowDefault();
 }
 
 ItemConfig ItemOptions::Resolve() const {
@@ -163,14 +155,14 @@ ItemConfig ItemOptions::Resolve() const {
   return resolved;
 }
 
-void AddDataset(CLI::App& app, Action& action) {
-  CLI::App* dataset = app.add_subcommand("dataset", "Build training data, and look at it");
-  dataset->require_subcommand(1);
-  AddGrasps(*dataset, action);
-  AddLabels(*dataset, action);
-  AddMerge(*dataset, action);
-  AddDatasetPictures(*dataset, action);
-  AddDatasetProbe(*dataset, action);
+void AddDataset(const Command& app, Action& action) {
+  const Command dataset = app.AddCommand("dataset", "Build training data, and look at it");
+  dataset.RequireCommand();
+  AddGrasps(dataset, action);
+  AddLabels(dataset, action);
+  AddMerge(dataset, action);
+  AddDatasetPictures(dataset, action);
+  AddDatasetProbe(dataset, action);
 }
 
 }  // namespace pregrasp

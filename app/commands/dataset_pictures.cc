@@ -130,20 +130,17 @@ int MakePictures(const PictureOptions& options) {
 
 }  // namespace
 
-void AddDatasetPictures(CLI::App& dataset, Action& action) {
+void AddDatasetPictures(const Command& dataset, Action& action) {
   auto options = std::make_shared<PictureOptions>();
-  CLI::App* command = dataset.add_subcommand(
+  const Command command = dataset.AddCommand(
       "pictures", "Contact sheets of random labels, each with a hand that made it");
-  command->add_option("GRASPS", options->grasps, "Merged data set of grasps")->required();
-  command->add_option("--generator", options->generator, "Weights of the grasp generators")
-      ->required();
-  command->add_option("--out", options->out, "Folder of the sheets")->required();
-  command->add_option("--count", options->count, "Labels")
-      ->check(CLI::Range(1, 100'000))
-      ->capture_default_str();
-  options->items.AddTo(*command);
-  options->items.AddLabelsTo(*command);
-  command->callback([options, &action] { action = [options] { return MakePictures(*options); }; });
+  command.Add("GRASPS", options->grasps, "Merged data set of grasps").Required();
+  command.Add("--generator", options->generator, "Weights of the grasp generators").Required();
+  command.Add("--out", options->out, "Folder of the sheets").Required();
+  command.Add("--count", options->count, "Labels").Within(1, 100'000).ShowDefault();
+  options->items.AddTo(command);
+  options->items.AddLabelsTo(command);
+  command.OnChosen([options, &action] { action = [options] { return MakePictures(*options); }; });
 }
 
 }  // namespace pregrasp

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "app/commands/dataset.h"
-#include "app/commands/seed_option.h"
 #include "app/core/error.h"
 #include "app/graph/learned_scorer.h"
 #include "app/training/labels.h"
@@ -176,34 +175,29 @@ int Probe(const ProbeOptions& options) {
 
 }  // namespace
 
-void AddDatasetProbe(CLI::App& dataset, Action& action) {
+void AddDatasetProbe(const Command& dataset, Action& action) {
   auto options = std::make_shared<ProbeOptions>();
   const fs::path weights = DataFolder() / "assets" / "weights";
   options->score = weights / "score.safetensors";
   options->generator = weights / "generator.safetensors";
-  CLI::App* command = dataset.add_subcommand(
-      "probe", "What the learned score says of a scene as its object is moved");
-  command->add_option("SCENE", options->scene, "The scene, a Lua file")->required();
-  command->add_option("--score", options->score, "Weights of the score function");
-  command->add_option("--generator", options->generator, "Weights of the grasp generators");
-  command->add_option("--direction", options->direction, "x,y,z in the world")
-      ->delimiter(',')
-      ->expected(3);
-  command->add_option("--distance", options->distance, "How far it is moved at most [m]")
-      ->capture_default_str();
-  command->add_option("--steps", options->steps, "Into so many steps")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--contacts", options->contacts, "Contacts that the scores are the mean of")
-      ->check(CLI::Range(1, 100'000))
-      ->capture_default_str();
+  const Command command =
+      dataset.AddCommand("probe", "What the learned score says of a scene as its object is moved");
+  command.Add("SCENE", options->scene, "The scene, a Lua file").Required();
+  command.Add("--score", options->score, "Weights of the score function");
+  command.Add("--generator", options->generator, "Weights of the grasp generators");
+  command.Add("--direction", options->direction, "x,y,z in the world").CommaSeparated(3);
+  command.Add("--distance", options->distance, "How far it is moved at most [m]").ShowDefault();
+  command.Add("--steps", options->steps, "Into so many steps").Within(1, 1000).ShowDefault();
+  command.Add("--contacts", options->contacts, "Contacts that the scores are the mean of")
+      .Within(1, 100'000)
+      .ShowDefault();
   command
-      ->add_option("--tries", options->tries,
-                   "Make labels too, with so many completions at each relief; takes minutes")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  AddSeedOption(*command, options->seed, "Seed of everything random");
-  command->callback([options, &action] { action = [options] { return Probe(*options); }; });
+      .Add("--tries", options->tries,
+           "Make labels too, with so many completions at each relief; takes minutes")
+      .Within(0, 1000)
+      .ShowDefault();
+  command.AddSeed(options->seed, "Seed of everything random");
+  command.OnChosen([options, &action] { action = [options] { return Probe(*options); }; });
 }
 
 }  // namespace pregrasp

@@ -32,7 +32,7 @@ std::string FindInCpuInfo(const std::string& key) {
 }
 
 std::string CpuFeatures() {
-  const std::string flags = " " + FindInCpuInfo("flags") + " ";
+  const std::string flags = fmt::format(" {} ", FindInCpuInfo("flags"));
   std::string features;
   for (const char* feature : {"sse4_2", "avx", "avx2", "fma", "avx512f"}) {
     if (flags.find(std::string(" ") + feature + " ") != std::string::npos) {
@@ -77,9 +77,9 @@ int Info() {
 
 }  // namespace
 
-void AddInfo(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("info", "Versions, OpenGL renderer, weights, processor");
-  command->callback([&action] { action = [] { return Info(); }; });
+void AddInfo(const Command& app, Action& action) {
+  const Command command = app.AddCommand("info", "Versions, OpenGL renderer, weights, processor");
+  command.OnChosen([&action] { action = [] { return Info(); }; });
 }
 
 }  // namespace pregrasp

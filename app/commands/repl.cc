@@ -23,12 +23,12 @@ int Run(const ReplOptions& options) {
 
 }  // namespace
 
-void AddRepl(CLI::App& app, Action& action) {
+void AddRepl(const Command& app, Action& action) {
   auto options = std::make_shared<ReplOptions>();
-  CLI::App* command = app.add_subcommand("repl", "Lua at a prompt, or from a pipe");
-  command->add_option("SCENE", options->scene, "Opened as s");
-  options->flags.AddTo(*command);
-  command->callback([options, &action] { action = [options] { return Run(*options); }; });
+  const Command command = app.AddCommand("repl", "Lua at a prompt, or from a pipe");
+  command.Add("SCENE", options->scene, "Opened as s");
+  options->flags.AddTo(command);
+  command.OnChosen([options, &action] { action = [options] { return Run(*options); }; });
 }
 
 }  // namespace pregrasp

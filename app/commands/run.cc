@@ -11,7 +11,6 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
-#include "app/commands/seed_option.h"
 #include "app/core/interrupt.h"
 #include "app/pipeline/planner_settings.h"
 #include "app/pipeline/start_verdict.h"
@@ -96,27 +95,24 @@ int Run(const RunOptions& options) {
 
 }  // namespace
 
-void AddRun(CLI::App& app, Action& action) {
+void AddRun(const Command& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Plan: from a scene to a grasp and a hand motion");
-  command->add_option("SCENE", options->scene, "The scene, a Lua file")->required();
-  AddSeedOption(*command, options->seed, "Seed of everything random");
-  command->add_option("--out", options->out,
-                      "The run directory; out/NAME by default. A finished run there is replaced");
-  command->add_option("--paths", options->run.paths, "Paths to optimise at most")
-      ->capture_default_str();
-  command->add_flag("--all", options->run.all, "Go on after the first success");
-  command->add_option("--threads", options->threads, "Threads; 0 is one per processor")
-      ->capture_default_str();
+  const Command command = app.AddCommand("run", "Plan: from a scene to a grasp and a hand motion");
+  command.Add("SCENE", options->scene, "The scene, a Lua file").Required();
+  command.AddSeed(options->seed, "Seed of everything random");
+  command.Add("--out", options->out,
+              "The run directory; out/NAME by default. A finished run there is replaced");
+  command.Add("--paths", options->run.paths, "Paths to optimise at most").ShowDefault();
+  command.AddFlag("--all", options->run.all, "Go on after the first success");
+  command.Add("--threads", options->threads, "Threads; 0 is one per processor").ShowDefault();
   command
-      ->add_option("--set", options->settings,
-                   "Change a value: fingertips.friction=0.05, mppi.samples=64")
-      ->allow_extra_args(false);
-  command->add_option("--pictures", options->pictures, "none, key or all")->capture_default_str();
-  command->add_option("--weights", options->weights, "Folder of the networks' weights");
-  command->add_flag("--replace", options->replace,
-                    "Replace a finished run at DIR (which is done anyway)");
-  command->callback([options, &action] { action = [options] { return Run(*options); }; });
+      .Add("--set", options->settings, "Change a value: fingertips.friction=0.05, mppi.samples=64")
+      .OneAtATime();
+  command.Add("--pictures", options->pictures, "none, key or all").ShowDefault();
+  command.Add("--weights", options->weights, "Folder of the networks' weights");
+  command.AddFlag("--replace", options->replace,
+                  "Replace a finished run at DIR (which is done anyway)");
+  command.OnChosen([options, &action] { action = [options] { return Run(*options); }; });
 }
 
 }  // namespace pregrasp

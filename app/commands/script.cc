@@ -25,13 +25,13 @@ int Run(const ScriptOptions& options) {
 
 }  // namespace
 
-void AddScript(CLI::App& app, Action& action) {
+void AddScript(const Command& app, Action& action) {
   auto options = std::make_shared<ScriptOptions>();
-  CLI::App* command = app.add_subcommand("script", "Run a Lua script");
-  command->add_option("FILE", options->file, "The script")->required();
-  command->add_option("ARGS", options->arguments, "What the script gets as ...");
-  options->flags.AddTo(*command);
-  command->callback([options, &action] { action = [options] { return Run(*options); }; });
+  const Command command = app.AddCommand("script", "Run a Lua script");
+  command.Add("FILE", options->file, "The script").Required();
+  command.Add("ARGS", options->arguments, "What the script gets as ...");
+  options->flags.AddTo(command);
+  command.OnChosen([options, &action] { action = [options] { return Run(*options); }; });
 }
 
 }  // namespace pregrasp

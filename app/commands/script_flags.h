@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "app/commands/command.h"
 #include "bindings/script.h"
 
 namespace pregrasp {
@@ -12,7 +12,7 @@ struct ScriptFlags {
   ScriptConfig config;
   std::string pictures;
 
-  void AddTo(CLI::App& command);
+  void AddTo(const Command& command);
 
   /// @param line  the command that does the same again, without these options.
   ScriptConfig Resolve(const std::string& line) const;
