@@ -1,6 +1,9 @@
 #include "bindings/function.h"
 
+#include <optional>
 #include <sstream>
+
+#include "bindings/protect.h"
 
 namespace pregrasp::internal {
 
@@ -17,6 +20,22 @@ void ThrowTooMany(const FunctionInfo& function, int got) {
   throw InputError("", "",
                    function.parameters.empty() ? "no arguments" : "(" + function.parameters + ")",
                    std::to_string(got) + " arguments");
+}
+
+int CallBound(lua_State* L, int (*body)(lua_State* L, const FunctionInfo& function), bool paused) {
+  return Protect(L, [L, body, paused]() -> int {
+    const auto& function =
+        *static_cast<const FunctionInfo*>(lua_touserdata(L, lua_upvalueindex(1)));
+    std::optional<Machine::Pause> pause;
+    if (paused) pause.emplace(L);
+    try {
+      return body(L, function);
+    } catch (const InputError& error) {
+      // Say which call it was, unless the line of the script is said already.
+      if (InSameFile(error.what(), WhereInLua(L))) throw;
+      throw InputError(function.name + ": " + error.what());
+    }
+  });
 }
 
 }  // namespace pregrasp::internal

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "bindings/protect.h"
+#include "app/core/error.h"
 #include "bindings/schema.h"
 #include "bindings/value.h"
 
@@ -119,21 +119,17 @@ int Invoke(lua_State* L, const FunctionInfo& function, bool method, R (*target)(
   }
 }
 
+/// Runs the body of a bound function, which is the running closure's upvalue, with what all of them
+/// share: compiled once.
+/// @param paused  time within it is not the script's.
+int CallBound(lua_State* L, int (*body)(lua_State* L, const FunctionInfo& function), bool paused);
+
 template <auto kTarget, bool kMethod, bool kPaused>
 int Thunk(lua_State* L) {
-  return Protect(L, [L]() -> int {
-    const auto& function =
-        *static_cast<const FunctionInfo*>(lua_touserdata(L, lua_upvalueindex(1)));
-    std::conditional_t<kPaused, Machine::Pause, lua_State*> pause(L);
-    static_cast<void>(pause);
-    try {
-      return Invoke(L, function, kMethod, kTarget);
-    } catch (const InputError& error) {
-      // Say which call it was, unless the line of the script is said already.
-      if (InSameFile(error.what(), WhereInLua(L))) throw;
-      throw InputError(function.name + ": " + error.what());
-    }
-  });
+  const auto body = [](lua_State* state, const FunctionInfo& function) {
+    return Invoke(state, function, kMethod, kTarget);
+  };
+  return CallBound(L, body, kPaused);
 }
 
 }  // namespace internal

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "bindings/lua_session.h"
+#include "bindings/machine.h"
 #include "bindings/script.h"
 
 namespace pregrasp {

@@ -5,6 +5,7 @@
 #include "app/core/interrupt.h"
 #include "bindings/lua_grasp.h"
 #include "bindings/lua_planner.h"
+#include "bindings/protect.h"
 
 namespace pregrasp {
 namespace {

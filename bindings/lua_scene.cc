@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "bindings/function.h"
+#include "bindings/machine.h"
 
 namespace pregrasp {
 

@@ -9,6 +9,7 @@
 #include "app/geometry/contact_mesh.h"
 #include "bindings/lua_planner.h"
 #include "bindings/lua_scene.h"
+#include "bindings/machine.h"
 #include "bindings/script.h"
 
 namespace pregrasp {
