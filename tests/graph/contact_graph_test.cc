@@ -10,18 +10,17 @@
 namespace pregrasp {
 namespace {
 
-const Vector3 kSize(0.2, 0.1, 0.05);
-
 ContactGraph MakeScored(double top_percent, std::uint64_t seed = 1) {
   ContactGraphConfig config;
   config.top_percent = top_percent;
-  ContactGraph graph(MakeBoxMesh(kSize), config);
-  graph.Score(SignedDistance(Box{kSize}), AnalyticScorer(3.0, -0.02), AnalyticScorer(50.0), seed);
+  ContactGraph graph(MakeBoxMesh(kBoxSize), config);
+  graph.Score(SignedDistance(Box{kBoxSize}), AnalyticScorer(3.0, -0.02), AnalyticScorer(50.0),
+              seed);
   return graph;
 }
 
 TEST(ContactGraphTest, NodesAreAllOrderedPairsOfTrianglesWithStableIds) {
-  const ContactGraph graph(MakeBoxMesh(kSize), {});
+  const ContactGraph graph(MakeBoxMesh(kBoxSize), {});
   ASSERT_EQ(graph.nodes().size(), 144U);
   for (int id = 0; id < 144; ++id) {
     EXPECT_EQ(graph.nodes()[id].id, id);
@@ -73,8 +72,8 @@ TEST(ContactGraphTest, EdgesJoinKeptNodesThatShareATriangleAndEachWithItself) {
 
 TEST(ContactGraphTest, AnOccludedPlacementIsWorthNothingInContext) {
   ContactGraphConfig config;
-  ContactGraph graph(MakeBoxMesh(kSize), config);
-  graph.Score(SignedDistance(Box{kSize}), AnalyticScorer(3.0, 1.0), AnalyticScorer(3.0), 1);
+  ContactGraph graph(MakeBoxMesh(kBoxSize), config);
+  graph.Score(SignedDistance(Box{kBoxSize}), AnalyticScorer(3.0, 1.0), AnalyticScorer(3.0), 1);
   for (const ContactNode& node : graph.nodes()) {
     EXPECT_EQ(node.s_c, 0.0);
     EXPECT_EQ(node.occluded, 1.0);
@@ -118,8 +117,8 @@ TEST(ContactGraphTest, AnotherPercentageCountsUntilPruningBegins) {
 TEST(ContactGraphTest, BadConfigurationsAndIdsAreBadInput) {
   ContactGraphConfig config;
   config.top_percent = 0.0;
-  EXPECT_THROW(ContactGraph(MakeBoxMesh(kSize), config), InputError);
-  ContactGraph graph(MakeBoxMesh(kSize), {});
+  EXPECT_THROW(ContactGraph(MakeBoxMesh(kBoxSize), config), InputError);
+  ContactGraph graph(MakeBoxMesh(kBoxSize), {});
   EXPECT_THROW(graph.Prune(), InputError);
   EXPECT_THROW(graph.Why(144), InputError);
 }

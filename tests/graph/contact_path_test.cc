@@ -12,13 +12,12 @@
 namespace pregrasp {
 namespace {
 
-const Vector3 kSize(0.2, 0.1, 0.05);
-
 ContactGraph MakeGraph(std::uint64_t seed) {
   ContactGraphConfig config;
   config.top_percent = 6.0;
-  ContactGraph graph(MakeBoxMesh(kSize), config);
-  graph.Score(SignedDistance(Box{kSize}), AnalyticScorer(3.0, -0.02), AnalyticScorer(50.0), seed);
+  ContactGraph graph(MakeBoxMesh(kBoxSize), config);
+  graph.Score(SignedDistance(Box{kBoxSize}), AnalyticScorer(3.0, -0.02), AnalyticScorer(50.0),
+              seed);
   graph.Prune();
   return graph;
 }
@@ -106,7 +105,7 @@ TEST(FindSiblingsTest, AreThePathsThatLostByTheirLastNode) {
 }
 
 TEST(PathSearchTest, AnUnprunedGraphOrAWrongLengthIsBadInput) {
-  EXPECT_THROW(PathSearch(ContactGraph(MakeBoxMesh(kSize), {}), 2), InputError);
+  EXPECT_THROW(PathSearch(ContactGraph(MakeBoxMesh(kBoxSize), {}), 2), InputError);
   EXPECT_THROW(PathSearch(MakeGraph(1), 0), InputError);
 }
 

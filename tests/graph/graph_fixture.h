@@ -6,6 +6,9 @@
 
 namespace pregrasp {
 
+/// The box that most tests search [m].
+inline const Vector3 kBoxSize(0.2, 0.1, 0.05);
+
 /// A box mesh of 12 triangles, full sizes (x, y, z).
 inline TriangleMesh MakeBoxMesh(const Vector3& size) {
   TriangleMesh mesh;

@@ -7,7 +7,7 @@
 namespace pregrasp {
 namespace {
 
-const Vector3 kSize(0.20, 0.06, 0.02);
+const Vector3 kBarSize(0.20, 0.06, 0.02);
 
 // A bar flat on a table, 5 cm of it over the edge at x = 0.
 Scene MakeBarScene() {
@@ -15,7 +15,7 @@ Scene MakeBarScene() {
   scene.name = "bar";
   Body bar;
   bar.name = "bar";
-  bar.shape = Box{kSize};
+  bar.shape = Box{kBarSize};
   bar.mass_properties = MassProperties{0.1, Vector3::Zero(), Matrix3::Identity() * 1e-4};
   bar.X_WB.translation() << -0.05, 0.0, 0.01;
   Body table;

@@ -8,7 +8,7 @@ namespace pregrasp {
 namespace {
 
 // An upright carton that a hand can close on.
-Scene CartonScene(double mass) {
+Scene CartonOnTable(double mass) {
   Scene scene = MakeScene("carton", Box{{0.05, 0.06, 0.12}}, mass, Shift(0, 0, 0.06));
   scene.bodies.push_back(FixedBox("table", {0.8, 0.8, 0.02}, {0, 0, -0.01}));
   return scene;
@@ -26,7 +26,7 @@ GraspResult PinchGrasp(const GraspWorld& world) {
 }
 
 TEST(LiftTest, ACartonFollowsTheHand) {
-  const Scene scene = CartonScene(0.06);
+  const Scene scene = CartonOnTable(0.06);
   const GraspWorld grasp_world(scene, ShadowHand());
   const World world(scene);
   const GraspResult grasp = PinchGrasp(grasp_world);
@@ -38,7 +38,7 @@ TEST(LiftTest, ACartonFollowsTheHand) {
 }
 
 TEST(LiftTest, WithSlipperyFingersItStaysBehind) {
-  const Scene scene = CartonScene(0.06);
+  const Scene scene = CartonOnTable(0.06);
   const GraspWorld grasp_world(scene, ShadowHand());
   const GraspResult grasp = PinchGrasp(grasp_world);
   ASSERT_TRUE(grasp.feasible());
@@ -53,7 +53,7 @@ TEST(LiftTest, WithSlipperyFingersItStaysBehind) {
 TEST(LiftTest, TheDirectionIsUpWhereThatIsFreeAndOutwardsBelowABoard) {
   const PointCloud cloud =
       SamplePointCloud(Box{{0.05, 0.06, 0.12}}, 128, Rng(1, RngStream::kPointCloud));
-  const Scene open = CartonScene(0.2);
+  const Scene open = CartonOnTable(0.2);
   const World open_world(open);
   EXPECT_TRUE(FindLiftDirection(open_world, open_world.InitialState(), cloud,
                                 EnvironmentDistance(open), 0.1)

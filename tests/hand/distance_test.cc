@@ -110,8 +110,8 @@ TEST(SegmentDistanceTest, NearestPointsOfSegmentsAreThoseOfDenseSamples) {
   }
 }
 
-// The world of the tests below: one of each kind of shape, around the origin.
-struct World {
+// What the tests below measure to: one of each kind of shape, around the origin.
+struct Bodies {
   std::vector<Shape> shapes;
   std::vector<RigidTransform> X_WB;
 
@@ -122,22 +122,22 @@ struct World {
   }
 };
 
-World MakeWorld(Rng& rng) {
+Bodies MakeBodies(Rng& rng) {
   Mesh mesh;
   mesh.mesh = MakeBumpyMesh(0.12, rng);
   const Union whole{{{Box{{0.1, 0.02, 0.02}}, RigidTransform::Identity()},
                      {Cylinder{0.02, 0.1}, MakeTransform(rng.Rotation(), Vector3(0, 0.02, 0))}}};
-  World world{
+  Bodies bodies{
       {mesh, Box{{0.1, 0.06, 0.04}}, Cylinder{0.03, 0.1}, Sphere{0.04}, Capsule{0.02, 0.1}, whole},
       {}};
-  for (std::size_t i = 0; i < world.shapes.size(); ++i) {
+  for (std::size_t i = 0; i < bodies.shapes.size(); ++i) {
     const Quaternion q = rng.Rotation();
-    world.X_WB.push_back(MakeTransform(q, 0.15 * rng.Direction()));
+    bodies.X_WB.push_back(MakeTransform(q, 0.15 * rng.Direction()));
   }
-  return world;
+  return bodies;
 }
 
-std::vector<HandDistance> FindAll(const HandObstacles& obstacles, const World& world,
+std::vector<HandDistance> FindAll(const HandObstacles& obstacles, const Bodies& bodies,
                                   const HandConfiguration& configuration, const TouchRule& touch,
                                   double influence) {
   HandPose pose;
@@ -145,7 +145,7 @@ std::vector<HandDistance> FindAll(const HandObstacles& obstacles, const World& w
   CapsuleEnds ends;
   CalcCapsuleEnds(ShadowHand(), pose, &ends);
   std::vector<HandDistance> near;
-  obstacles.FindNear(ShadowHand(), ends, obstacles.Place(world.X_WB), touch, influence, &near);
+  obstacles.FindNear(ShadowHand(), ends, obstacles.Place(bodies.X_WB), touch, influence, &near);
   FindNearSelf(ShadowHand(), ends, influence, &near);
   return near;
 }
@@ -158,8 +158,8 @@ HandConfiguration NearOrigin(Rng& rng) {
 
 TEST(HandDistanceTest, EveryPairNearerThanTheInfluenceIsFoundAndNoOther) {
   Rng rng(4);
-  const World world = MakeWorld(rng);
-  const HandObstacles obstacles(world.pointers());
+  const Bodies bodies = MakeBodies(rng);
+  const HandObstacles obstacles(bodies.pointers());
   constexpr double kInfluence = 0.01;
   for (int trial = 0; trial < 15; ++trial) {
     const HandConfiguration configuration = NearOrigin(rng);
@@ -167,10 +167,11 @@ TEST(HandDistanceTest, EveryPairNearerThanTheInfluenceIsFoundAndNoOther) {
     CalcHandPose(ShadowHand(), configuration.X_WH, configuration.q, &pose);
     CapsuleEnds ends;
     CalcCapsuleEnds(ShadowHand(), pose, &ends);
-    const std::vector<HandDistance> near = FindAll(obstacles, world, configuration, {}, kInfluence);
-    for (std::size_t body = 0; body < world.shapes.size(); ++body) {
-      const SignedDistance distance(world.shapes[body]);
-      const RigidTransform X_BW = world.X_WB[body].inverse();
+    const std::vector<HandDistance> near =
+        FindAll(obstacles, bodies, configuration, {}, kInfluence);
+    for (std::size_t body = 0; body < bodies.shapes.size(); ++body) {
+      const SignedDistance distance(bodies.shapes[body]);
+      const RigidTransform X_BW = bodies.X_WB[body].inverse();
       for (std::size_t i = 0; i < ShadowHand().capsules.size(); ++i) {
         const double sampled =
             SampleLeast([&](const Vector3& p) { return distance.Calc(X_BW * p); },
@@ -199,14 +200,14 @@ TEST(HandDistanceTest, GradientsAreTheDifferenceQuotients) {
   int compared = 0;
   int wrong = 0;
   for (int trial = 0; trial < 12; ++trial) {
-    const World world = MakeWorld(rng);
-    const HandObstacles obstacles(world.pointers());
+    const Bodies bodies = MakeBodies(rng);
+    const HandObstacles obstacles(bodies.pointers());
     const HandConfiguration start = NearOrigin(rng);
     HandPose pose;
     CalcHandPose(ShadowHand(), start.X_WH, start.q, &pose);
-    const auto near = FindAll(obstacles, world, start, {}, 0.02);
+    const auto near = FindAll(obstacles, bodies, start, {}, 0.02);
     const auto at = [&](const HandVector& step) {
-      return FindAll(obstacles, world, Advance(start, step), {}, 0.03);
+      return FindAll(obstacles, bodies, Advance(start, step), {}, 0.03);
     };
     for (int i = 0; i < kNumHandDofs; ++i) {
       const auto plus = at(kStep * HandVector::Unit(i));
@@ -244,12 +245,12 @@ TEST(HandDistanceTest, GradientsAreTheDifferenceQuotients) {
 
 TEST(HandDistanceTest, OnlyTouchingDistalLinksWithTheObjectAreTouches) {
   const Shape box = Box{{0.4, 0.4, 0.4}};
-  World world{{box, box}, {RigidTransform::Identity(), RigidTransform::Identity()}};
-  const HandObstacles obstacles(world.pointers());
+  Bodies bodies{{box, box}, {RigidTransform::Identity(), RigidTransform::Identity()}};
+  const HandObstacles obstacles(bodies.pointers());
   TouchRule touch;
   touch.touching[static_cast<int>(Finger::kIndex)] = true;
   int touches = 0;
-  for (const HandDistance& d : FindAll(obstacles, world, {}, touch, 0.01)) {
+  for (const HandDistance& d : FindAll(obstacles, bodies, {}, touch, 0.01)) {
     if (!d.touch) continue;
     ++touches;
     EXPECT_EQ(d.pair, HandPair::kObject);

@@ -7,7 +7,7 @@
 namespace pregrasp {
 namespace {
 
-Scene MakeScene() {
+Scene MakeObjectOnTable() {
   Scene scene;
   scene.name = "scene";
   Body object;
@@ -28,7 +28,7 @@ void Set(Scene& scene, const std::string& assignment) {
 }
 
 std::string Failure(const std::string& assignment) {
-  Scene scene = MakeScene();
+  Scene scene = MakeObjectOnTable();
   try {
     Set(scene, assignment);
   } catch (const InputError& error) {
@@ -38,7 +38,7 @@ std::string Failure(const std::string& assignment) {
 }
 
 TEST(SettingsTest, ChangeTheSceneByKey) {
-  Scene scene = MakeScene();
+  Scene scene = MakeObjectOnTable();
   Set(scene, "fingertips.friction=0.05");
   Set(scene, "environment.table.friction=0.25");
   Set(scene, "environment.table.p=0,0,-0.05");
@@ -52,7 +52,7 @@ TEST(SettingsTest, ChangeTheSceneByKey) {
 }
 
 TEST(SettingsTest, AGivenInertiaFollowsTheMassAndAMassMakesABodyMovable) {
-  Scene scene = MakeScene();
+  Scene scene = MakeObjectOnTable();
   Set(scene, "object.mass=0.4");
   EXPECT_EQ(scene.object().mass_properties->mass, 0.4);
   EXPECT_EQ(scene.object().mass_properties->I_BBcm(0, 0), 2.0);
@@ -75,7 +75,7 @@ TEST(SettingsTest, WhatIsWrongIsSaidWithTheNearestKey) {
 }
 
 TEST(SettingsTest, KeysOfOtherStagesAreLeftForThem) {
-  Scene scene = MakeScene();
+  Scene scene = MakeObjectOnTable();
   std::vector<Setting> settings = {ParseSetting("mppi.samples=64"), ParseSetting("object.mass=1"),
                                    ParseSetting("graph.triangles=30")};
   ApplySceneSettings(scene, settings);
