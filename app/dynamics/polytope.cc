@@ -79,6 +79,17 @@ std::vector<int> TraceOutline(const std::vector<int>& members, int face,
   return outline.size() == next_corner.size() ? outline : std::vector<int>();
 }
 
+// Leaves out corners evenly, so that a face has no more than there is room for: round faces lose
+// less than 1/1800 of their radius.
+std::vector<int> Thin(const std::vector<int>& outline) {
+  if (outline.size() <= Polytope::kMaxCorners) return outline;
+  std::vector<int> thin;
+  for (std::size_t i = 0; i < Polytope::kMaxCorners; ++i) {
+    thin.push_back(outline[i * outline.size() / Polytope::kMaxCorners]);
+  }
+  return thin;
+}
+
 // Adds a face whose plane touches the polytope from outside.
 void AddFace(const Vector3& nhat, const std::vector<int>& outline, Polytope* polytope) {
   Polytope::Face face;
@@ -157,7 +168,7 @@ Polytope MakePolytope(const TriangleMesh& hull) {
         GrowFace(hull, seed, index, kPlaneShare * size, triangle_of_edge, &triangles);
     const std::vector<int> outline = TraceOutline(members, index, triangle_of_edge, triangles);
     if (!outline.empty()) {
-      AddFace(triangles[seed].nhat, outline, &polytope);
+      AddFace(triangles[seed].nhat, Thin(outline), &polytope);
       continue;
     }
     for (const int member : members) {

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kSamples = 700;           // surface points of a piece that judge where to cut
 constexpr int kPairs = 1500;            // pairs of them
+constexpr double kNatural = 0.5;        // what an edge that turns inward is worth
 constexpr double kSmallestSide = 0.01;  // share of a piece's samples on either side of a cut
 
 MatrixX3 SampleSurface(const std::vector<SolidPart>& parts, Rng& rng) {
@@ -130,7 +131,9 @@ std::vector<Cut> CutFinder::Find(const std::vector<SolidPart>& parts) const {
   for (const Pair& pair : pairs) total += pair.energy;
   std::vector<Cut> cuts;
   std::vector<bool> above(kSamples);
-  for (const Plane& plane : ListPlanes(P)) {
+  const std::vector<Plane> planes = ListPlanes(P);
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    const Plane& plane = planes[k];
     const VectorX heights = P * plane.nhat;
     int count = 0;
     for (int i = 0; i < kSamples; ++i) {
@@ -143,6 +146,8 @@ std::vector<Cut> CutFinder::Find(const std::vector<SolidPart>& parts) const {
     for (const Pair& pair : pairs) {
       if (above[pair.i] == above[pair.j]) energy += pair.energy;
     }
+    // Natural cuts leave whole what is convex, others have to be joined again.
+    if (k < reflex_planes_.size()) energy *= kNatural;
     cuts.push_back({plane, energy});
   }
   std::stable_sort(cuts.begin(), cuts.end(),

@@ -1,20 +1,22 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
+#include <list>
+#include <mutex>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "app/core/error.h"
-#include "app/core/rng.h"
+#include "app/core/sha256.h"
 #include "app/core/text.h"
 #include "app/geometry/cut_finder.h"
-#include "app/geometry/distance_bounds.h"
 #include "app/geometry/hull.h"
-#include "app/geometry/mesh_cut.h"
-#include "app/geometry/mesh_distance.h"
+#include "app/geometry/merge_pieces.h"
 #include "app/geometry/mesh_topology.h"
+#include "app/geometry/piece.h"
+#include "app/geometry/revolution.h"
+#include "app/geometry/sectors.h"
 #include "app/geometry/signed_distance.h"
 #include "app/geometry/tessellate.h"
 #include "app/geometry/triangle_samples.h"
@@ -22,104 +24,59 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kTrials = 4;         // cuts that are tried out, the best by pairs
-constexpr int kHullSamples = 160;  // points of a hull that judge how far it reaches outside
-constexpr int kOvercut = 3;        // pieces before merging, in multiples of those wanted
-
-// One or, after merging, several parts of the solid, with their joint hull.
-struct Piece {
-  std::vector<SolidPart> parts;
-  TriangleMesh hull;
-  AlignedBox bounds;
-  double protrusion = 0.0;  // of the hull outside the solid [m]
-  bool whole = false;       // no plane cuts it well
-};
+constexpr int kTrials = 4;        // cuts that are tried out, the best by pairs
+constexpr double kOvercut = 1.6;  // pieces before merging, in multiples of those wanted
 
 class Decomposer {
  public:
   Decomposer(const TriangleMesh& mesh, const DecomposeConfig& config)
       : mesh_(mesh),
         config_(config),
-        distance_(mesh),
-        roughly_(distance_),
-        size_(distance_.bounds().sizes().norm()),
-        cuts_(mesh, roughly_, size_) {}
+        limit_(config.concavity),
+        most_(static_cast<int>(kOvercut * config.max_pieces)),
+        maker_(mesh, config),
+        cuts_(mesh, maker_.roughly(), maker_.size()) {}
 
   std::vector<TriangleMesh> Run() {
-    Piece all;
-    all.parts.push_back(MakeSolidPart(mesh_));
-    Close(all);
-    if (all.protrusion > config_.concavity) cuts_.FindReflexPlanes();
-    pieces_.push_back(std::move(all));
-    while (static_cast<int>(pieces_.size()) < kOvercut * config_.max_pieces && CutWorst()) {
+    Piece whole = maker_.MakeWhole();
+    if (whole.protrusion > config_.concavity) {
+      if (const auto revolution = FindRevolution(mesh_)) {
+        Sectors sectors = CutIntoSectors(maker_, *revolution, config_.concavity, most_);
+        pieces_ = std::move(sectors.pieces);
+        limit_ = std::max(limit_, sectors.protrusion);
+      }
+      cuts_.FindReflexPlanes();
     }
-    Merge();
+    if (pieces_.empty()) pieces_.push_back(std::move(whole));
+    while (static_cast<int>(pieces_.size()) < most_ && CutWorst()) {
+    }
+    MergePieces(maker_, limit_, config_.max_pieces, pieces_);
     Improve();
     std::vector<TriangleMesh> hulls;
     hulls.reserve(pieces_.size());
-    for (Piece& piece : pieces_) hulls.push_back(std::move(piece.hull));
+    for (Piece& piece : pieces_) {
+      maker_.Finish(piece);
+      hulls.push_back(std::move(piece.hull));
+    }
     return hulls;
   }
 
  private:
   struct Halves {
-    std::vector<Piece> pieces;  // one when the other has no volume
+    std::vector<Piece> pieces;
     double worst = std::numeric_limits<double>::infinity();
     double sum = 0.0;
   };
-
-  // Fills in hull, bounds and protrusion from the parts; false for a piece without volume.
-  bool Close(Piece& piece) const {
-    std::vector<Vector3> points;
-    for (const SolidPart& part : piece.parts) AppendHullPoints(part, distance_, points);
-    MatrixX3 P(static_cast<int>(points.size()), 3);
-    for (std::size_t i = 0; i < points.size(); ++i) P.row(i) = points[i].transpose();
-    return CloseAround(P, piece);
-  }
-
-  bool CloseAround(const MatrixX3& P, Piece& piece) const {
-    try {
-      piece.hull = CalcReducedHull(P, config_.tolerance, config_.max_vertices);
-    } catch (const InputError&) {
-      return false;
-    }
-    piece.bounds = {Vector3(piece.hull.V.colwise().minCoeff()),
-                    Vector3(piece.hull.V.colwise().maxCoeff())};
-    piece.protrusion = CalcFarthestOutside(piece.hull);
-    return true;
-  }
-
-  double CalcFarthestOutside(const TriangleMesh& hull) const {
-    double farthest = 0.0;
-    const auto visit = [&](const Vector3& p) { farthest = roughly_.CalcAbove(p, farthest); };
-    std::vector<double> sums;
-    double sum = 0.0;
-    for (int f = 0; f < hull.F.rows(); ++f) {
-      const Triangle t = FaceOf(hull, f);
-      sums.push_back(sum += AreaOf(t));
-      visit((t[0] + t[1] + t[2]) / 3.0);
-      for (int i = 0; i < 3; ++i) {
-        if (hull.F(f, i) < hull.F(f, (i + 1) % 3)) visit(0.5 * (t[i] + t[(i + 1) % 3]));
-      }
-    }
-    Rng rng(0, RngStream::kDecomposition, 2);
-    VisitSamples(
-        sums, kHullSamples, rng, [&](int f) { return FaceOf(hull, f); }, visit);
-    return farthest;
-  }
 
   Halves CutAlong(const Piece& piece, const Plane& plane) const {
     Halves halves;
     halves.worst = 0.0;
     for (const Plane& side : {plane, plane.Turned()}) {
-      Piece half;
-      for (const SolidPart& part : piece.parts) {
-        half.parts.push_back(CutBelow(part, side, 1e-9 * size_));
-        if (half.parts.back().surface.empty()) half.parts.pop_back();
-      }
-      if (half.parts.empty() || !Close(half)) continue;
+      Piece half = maker_.CutBelow(piece, side);
+      if (half.parts.empty() || !maker_.Close(half)) continue;
+      maker_.Measure(half);
       halves.worst = std::max(halves.worst, half.protrusion);
-      halves.sum += half.protrusion;
+      halves.sum += half.volume;
       halves.pieces.push_back(std::move(half));
     }
     return halves;
@@ -133,7 +90,7 @@ class Decomposer {
       const bool similar = std::any_of(tried.begin(), tried.end(), [&](const Plane& other) {
         const double along = other.nhat.dot(cut.plane.nhat);
         const double apart = other.offset - std::copysign(1.0, along) * cut.plane.offset;
-        return std::abs(along) > 0.99 && std::abs(apart) < 0.02 * size_;
+        return std::abs(along) > 0.99 && std::abs(apart) < 0.02 * maker_.size();
       });
       if (similar) continue;
       tried.push_back(cut.plane);
@@ -150,7 +107,7 @@ class Decomposer {
   int FindWorst() const {
     int worst = -1;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      if (pieces_[i].whole || pieces_[i].protrusion <= config_.concavity) continue;
+      if (pieces_[i].whole || pieces_[i].protrusion <= limit_) continue;
       if (worst < 0 || pieces_[i].protrusion > pieces_[worst].protrusion) {
         worst = static_cast<int>(i);
       }
@@ -172,105 +129,6 @@ class Decomposer {
     return true;
   }
 
-  // Two pieces that may become one. The protrusion of their joint hull is worked out when `exact`;
-  // before that it is a lower bound.
-  struct Joint {
-    double protrusion = 0.0;
-    bool exact = false;
-    std::size_t i = 0, j = 0;
-
-    bool operator<(const Joint& other) const {
-      return std::tie(protrusion, i, j) < std::tie(other.protrusion, other.i, other.j);
-    }
-  };
-
-  // How far lines between corners of the two hulls leave the solid: some of the joint hull.
-  double BoundJoint(const Piece& a, const Piece& b) const {
-    double farthest = 0.0;
-    constexpr int kLines = 24;
-    for (int k = 0; k < kLines; ++k) {
-      const Vector3 p = a.hull.V.row((k * 7) % a.hull.V.rows());
-      const Vector3 q = b.hull.V.row((k * 5) % b.hull.V.rows());
-      farthest = roughly_.CalcAbove(0.5 * (p + q), farthest);
-    }
-    return farthest;
-  }
-
-  bool CloseJoint(const Joint& joint, Piece& piece) const {
-    const MatrixX3 &V = pieces_[joint.i].hull.V, &W = pieces_[joint.j].hull.V;
-    MatrixX3 P(V.rows() + W.rows(), 3);
-    P << V, W;
-    return CloseAround(P, piece);
-  }
-
-  void AddJoints(std::size_t i, const std::vector<bool>& gone, std::vector<Joint>& joints) const {
-    for (std::size_t j = 0; j < pieces_.size(); ++j) {
-      if (j == i || gone[j]) continue;
-      AlignedBox reach = pieces_[i].bounds;
-      reach.min().array() -= config_.concavity;
-      reach.max().array() += config_.concavity;
-      if (reach.intersection(pieces_[j].bounds).isEmpty()) continue;
-      joints.push_back({BoundJoint(pieces_[i], pieces_[j]), false, i, j});
-    }
-  }
-
-  // The joint that reaches least outside, worked out; none left when false.
-  bool FindBestJoint(std::vector<Joint>& joints, Joint& best, Piece& piece) const {
-    while (!joints.empty()) {
-      const auto it = std::min_element(joints.begin(), joints.end());
-      Piece closed;
-      if (!CloseJoint(*it, closed)) {
-        joints.erase(it);
-        continue;
-      }
-      const bool was_exact = it->exact;
-      it->exact = true;
-      it->protrusion = closed.protrusion;
-      if (was_exact || it == std::min_element(joints.begin(), joints.end())) {
-        best = *it;
-        piece = std::move(closed);
-        return true;
-      }
-    }
-    return false;
-  }
-
-  // Joins two pieces again and again, those first whose joint hull reaches least outside, as long
-  // as it reaches no farther than allowed or there are too many pieces.
-  void Merge() {
-    std::vector<bool> gone(pieces_.size(), false);
-    std::vector<Joint> joints;
-    for (std::size_t i = pieces_.size(); i-- > 0;) {
-      gone[i] = true;  // each pair once
-      AddJoints(i, gone, joints);
-    }
-    gone.assign(pieces_.size(), false);
-    auto count = static_cast<int>(pieces_.size());
-    Joint best;
-    Piece joined;
-    while (FindBestJoint(joints, best, joined)) {
-      if (count <= config_.max_pieces && joined.protrusion > config_.concavity) break;
-      for (const std::size_t k : {best.i, best.j}) {
-        std::move(pieces_[k].parts.begin(), pieces_[k].parts.end(),
-                  std::back_inserter(joined.parts));
-        gone[k] = true;
-      }
-      joints.erase(std::remove_if(joints.begin(), joints.end(),
-                                  [&](const Joint& j) { return gone[j.i] || gone[j.j]; }),
-                   joints.end());
-      pieces_.push_back(std::move(joined));
-      joined = {};
-      gone.push_back(false);
-      --count;
-      AddJoints(pieces_.size() - 1, gone, joints);
-    }
-    std::vector<Piece> kept;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      if (!gone[i]) kept.push_back(std::move(pieces_[i]));
-    }
-    pieces_ = std::move(kept);
-  }
-
   // Cuts the worst piece and joins two others in exchange, while that makes the worst less bad.
   void Improve() {
     for (int round = 0; round < 2 * config_.max_pieces; ++round) {
@@ -282,7 +140,8 @@ class Decomposer {
         pieces_[worst].whole = true;
         continue;
       }
-      if (static_cast<int>(pieces_.size()) >= config_.max_pieces && !JoinBelow(before, worst)) {
+      if (static_cast<int>(pieces_.size()) >= config_.max_pieces &&
+          !JoinBestPair(maker_, before, worst, pieces_)) {
         return;
       }
       // Joining has moved the worst piece to the front or left it in place.
@@ -292,40 +151,58 @@ class Decomposer {
     }
   }
 
-  // Joins the two pieces, not `except`, that reach least outside together, if that is less than
-  // `limit`.
-  bool JoinBelow(double limit, int except) {
-    std::vector<bool> gone(pieces_.size(), false);
-    std::vector<Joint> joints;
-    gone[except] = true;
-    for (std::size_t i = pieces_.size(); i-- > 0;) {
-      if (gone[i]) continue;
-      gone[i] = true;
-      AddJoints(i, gone, joints);
-    }
-    joints.erase(std::remove_if(joints.begin(), joints.end(),
-                                [&](const Joint& j) { return j.protrusion >= limit; }),
-                 joints.end());
-    Joint best;
-    Piece joined;
-    if (!FindBestJoint(joints, best, joined) || joined.protrusion >= limit) return false;
-    for (const std::size_t k : {best.i, best.j}) {
-      std::move(pieces_[k].parts.begin(), pieces_[k].parts.end(), std::back_inserter(joined.parts));
-    }
-    pieces_.erase(pieces_.begin() + std::max(best.i, best.j));
-    pieces_.erase(pieces_.begin() + std::min(best.i, best.j));
-    pieces_.push_back(std::move(joined));
-    return true;
-  }
-
   const TriangleMesh& mesh_;
   const DecomposeConfig& config_;
-  MeshDistance distance_;
-  DistanceBounds roughly_;
-  double size_;
+  double limit_;  // how far pieces may reach outside [m]
+  int most_;      // pieces before merging
+  PieceMaker maker_;
   CutFinder cuts_;
   std::vector<Piece> pieces_;
 };
+
+std::string HashOf(const TriangleMesh& mesh, const DecomposeConfig& config) {
+  std::string bytes;
+  const auto add = [&bytes](const auto* data, std::size_t count) {
+    bytes.append(reinterpret_cast<const char*>(data), count * sizeof(*data));
+  };
+  const std::array<double, 6> head{static_cast<double>(mesh.V.rows()),
+                                   static_cast<double>(mesh.F.rows()),
+                                   static_cast<double>(config.max_pieces),
+                                   config.concavity,
+                                   config.tolerance,
+                                   static_cast<double>(config.max_vertices)};
+  add(head.data(), head.size());
+  add(mesh.V.data(), mesh.V.size());
+  add(mesh.F.data(), mesh.F.size());
+  return Sha256(bytes);
+}
+
+// The hulls of one mesh, which are worked out once per process: a scene's World is built again and
+// again. The answer is the same with and without; the last meshes asked for are kept.
+std::vector<TriangleMesh> DecomposeOnce(const TriangleMesh& mesh, const DecomposeConfig& config) {
+  struct Entry {
+    std::string hash;
+    std::vector<TriangleMesh> hulls;
+  };
+  constexpr std::size_t kMostEntries = 64;
+  static std::mutex mutex;
+  static std::list<Entry> entries;  // the last used first
+  const std::string hash = HashOf(mesh, config);
+  {
+    const std::lock_guard lock(mutex);
+    const auto it = std::find_if(entries.begin(), entries.end(),
+                                 [&](const Entry& entry) { return entry.hash == hash; });
+    if (it != entries.end()) {
+      entries.splice(entries.begin(), entries, it);
+      return it->hulls;
+    }
+  }
+  std::vector<TriangleMesh> hulls = Decomposer(mesh, config).Run();
+  const std::lock_guard lock(mutex);
+  entries.push_front({hash, hulls});
+  if (entries.size() > kMostEntries) entries.pop_back();
+  return hulls;
+}
 
 void Decompose(const Shape& shape, const RigidTransform& X_BP, const DecomposeConfig& config,
                std::vector<ConvexPiece>& pieces) {
@@ -347,7 +224,7 @@ void Decompose(const Shape& shape, const RigidTransform& X_BP, const DecomposeCo
     pieces.push_back({shape, X_BP});
     return;
   }
-  for (TriangleMesh& hull : Decomposer(*mesh, config).Run()) {
+  for (TriangleMesh& hull : DecomposeOnce(*mesh, config)) {
     pieces.push_back({Mesh{file, 1.0, std::move(hull)}, X_BP});
   }
 }

@@ -181,9 +181,12 @@ TriangleMesh CalcReducedHull(const MatrixX3& points, double tolerance, int max_v
     if (proposals.empty() || room <= 0) return hull;
     // Only the outer half at once: one far point often brings its neighbours within tolerance.
     const auto batch = std::min<std::size_t>((proposals.size() + 1) / 2, room);
+    const std::size_t before = chosen.size();
     for (std::size_t i = 0; i < batch; ++i) chosen.push_back(proposals[i].point);
     std::sort(chosen.begin(), chosen.end());
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    // Corners may seem to lie outside of slivers, whose planes are uncertain.
+    if (chosen.size() == before) return hull;
   }
 }
 
