@@ -122,7 +122,7 @@ struct Hollow {
 std::vector<Hollow> HollowShapes() {
   return {
       {"cup", testing::MakeCup(0.04, 0.1, 0.003, 48), 0.001, {{0, 0, 0.05}, {0, 0, 0.09}}, 0.034},
-      {"bowl", testing::MakeBowl(0.08, 0.003, 16, 48), 0.001, {{0, 0, -0.01}}, 0.060},
+      {"bowl", testing::MakeBowl(0.08, 0.003, 16, 48), 0.0022, {{0, 0, -0.01}}, 0.060},
       {"plate",
        testing::MakePlate(48),
        0.001,
