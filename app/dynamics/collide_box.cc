@@ -224,7 +224,7 @@ class BoxPair {
     if (count == 0) return FaceResult::kApart;
     const ContactPlane plane{ref.p_WP + s * half[i] * ref.R_WP.col(i), ref.R_WP.col(ix),
                              ref.R_WP.col(iy), s * ref.R_WP.col(i)};
-    AddFacePoints(points.data(), count, plane, Approach(ref, inc, plane), manifold);
+    AddFacePoints(points.data(), count, plane, Approach(ref, inc, plane.nhat_W, plane), manifold);
     return FaceResult::kTouching;
   }
 

@@ -127,8 +127,8 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   contact.p_WO = plane.a.p_WP + plane.a.R_WP * contact.p_WO;
   // Four are taken as they are, without the lowest's copy.
   const int skip = count <= 5 ? 1 : 0;
-  AddFacePoints(points.data() + skip, count - skip, contact, Approach(plane.a, plane.q, contact),
-                manifold);
+  AddFacePoints(points.data() + skip, count - skip, contact,
+                Approach(plane.a, plane.q, contact.nhat_W, contact), manifold);
 }
 
 }  // namespace

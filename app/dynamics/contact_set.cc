@@ -10,7 +10,7 @@ namespace pregrasp {
 namespace {
 
 // Key layout: body a, body b (12 bits each), piece a, piece b (10 bits each), feature (20 bits).
-constexpr int kMaxBodies = 1 << 12, kMaxPieces = 1 << 10;
+constexpr int kMaxBodies = 1 << 12, kMaxPieces = 1 << 10, kFeatureBits = 20;
 
 // Overlap that the solver leaves alone anyway [m].
 constexpr double kMaxOverlap = 1e-6;
@@ -22,18 +22,9 @@ std::uint64_t MakeKey(int body_a, int body_b, int piece_a, int piece_b) {
          (static_cast<std::uint64_t>(piece_b) << kFeatureBits);
 }
 
-CollisionScene::Scratch::Bounds BoundsOf(const Matrix3& R_WB, const Vector3& p_WB,
-                                         const Vector3& p_BBox, const Vector3& half) {
-  const Vector3 center = p_WB + R_WB * p_BBox;
+Bounds BoundsOf(const Matrix3& R_WB, const Vector3& p_WBox, const Vector3& half) {
   const Vector3 extent = R_WB.cwiseAbs() * half;
-  return {center - extent, center + extent, 0.0};
-}
-
-bool Overlaps(const CollisionScene::Scratch::Bounds& a, const CollisionScene::Scratch::Bounds& b,
-              double margin) {
-  return a.low.x() - b.high.x() <= margin && b.low.x() - a.high.x() <= margin &&
-         a.low.y() - b.high.y() <= margin && b.low.y() - a.high.y() <= margin &&
-         a.low.z() - b.high.z() <= margin && b.low.z() - a.high.z() <= margin;
+  return {p_WBox - extent, p_WBox + extent};
 }
 
 PlacedConvex Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_WB) {
@@ -41,18 +32,75 @@ PlacedConvex Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_W
   placed.convex = &convex;
   placed.R_WP = convex.is_aligned ? R_WB : Matrix3(R_WB * convex.X_BP.linear());
   placed.p_WP = p_WB + R_WB * convex.X_BP.translation();
+  placed.bounds = BoundsOf(placed.R_WP, placed.p_WP, convex.half);
   return placed;
 }
 
-// Names the points of the pieces `key` that bore load, and takes them and all before them off
-// `cache`, which is in the order of the keys.
-void TakeLoaded(std::uint64_t key, std::span<const WorldState::CachedImpulse>* cache,
-                Manifold* manifold) {
-  while (!cache->empty() && cache->front().key < key) *cache = cache->subspan(1);
-  while (!cache->empty() && cache->front().key >> kFeatureBits == key >> kFeatureBits) {
-    manifold->loaded[manifold->num_loaded++] = static_cast<std::uint32_t>(cache->front().key - key);
-    *cache = cache->subspan(1);
+// The points of two bodies that bore load. Takes them and all before them off `cache`, which is in
+// the order of the pairs.
+std::span<const WorldState::CachedImpulse> TakeLoaded(
+    std::uint64_t key, std::span<const WorldState::CachedImpulse>* cache) {
+  std::size_t begin = 0;
+  while (begin < cache->size() && PairOfKey((*cache)[begin].key) < PairOfKey(key)) ++begin;
+  std::size_t end = begin;
+  while (end < cache->size() && PairOfKey((*cache)[end].key) == PairOfKey(key)) ++end;
+  const auto loaded = cache->subspan(begin, end - begin);
+  *cache = cache->subspan(end);
+  return loaded;
+}
+
+// The tangent plane of a contact, on the surface of the body that does not move, or of a.
+ContactPlane PlaneOf(const Contact& contact) {
+  const Manifold& manifold = contact.manifold;
+  const Matrix3 frame = FrameFromNormal(manifold.nhat_W);
+  const double to_other = contact.movable_b < 0 ? -1.0 : 1.0;
+  const ManifoldPoint& point = manifold.points[0];
+  return {point.p_W - 0.5 * to_other * point.phi * manifold.nhat_W, frame.col(0), frame.col(1),
+          to_other * manifold.nhat_W};
+}
+
+bool IsCoplanar(const ContactPlane& plane, const ContactPlane& other) {
+  constexpr double kMaxTurn2 = 1e-8, kMaxShift = 1e-5;  // [rad^2], [m]
+  return 1.0 - plane.nhat_W.dot(other.nhat_W) < 0.5 * kMaxTurn2 &&
+         std::abs(plane.nhat_W.dot(other.p_WO - plane.p_WO)) < kMaxShift;
+}
+
+// Adds all points of a contact, those that it leaves out too, as seen in `plane`; none if there is
+// no room. Returns whether there is.
+bool CollectPoints(const Manifold& manifold, const std::vector<PlanarPoint>& face_points,
+                   const ContactPlane& plane, std::vector<PlanarPoint>* points) {
+  const int count = std::max(manifold.size, manifold.num_face_points);
+  if (static_cast<int>(points->size()) + count > kMaxPlanarPoints) return false;
+  const auto add = [&](const Vector3& p_W, double phi, std::uint64_t key) {
+    const Vector3 p = p_W - plane.p_WO;
+    points->push_back({plane.x_W.dot(p), plane.y_W.dot(p), phi, key});
+  };
+  for (int i = 0; i < manifold.num_face_points; ++i) {
+    const PlanarPoint& point = face_points[manifold.first_face_point + i];
+    add(manifold.plane.At(point.x, point.y, point.phi), point.phi, point.key);
   }
+  for (int i = 0; i < manifold.size && manifold.num_face_points == 0; ++i) {
+    const ManifoldPoint& point = manifold.points[i];
+    add(point.p_W, point.phi, point.key);
+  }
+  return true;
+}
+
+// Pieces that overlap or adjoin have corners in common, of which one is enough. Of more than four
+// points the choice sees to that.
+void RemoveCopies(std::vector<PlanarPoint>* points) {
+  constexpr double kSame = 1e-7;  // [m]
+  if (points->size() > 4) return;
+  const auto end = points->end();
+  auto kept = points->begin();
+  for (auto point = points->begin(); point != end; ++point) {
+    const auto is_same = [&](const PlanarPoint& other) {
+      return std::abs(other.x - point->x) < kSame && std::abs(other.y - point->y) < kSame &&
+             std::abs(other.phi - point->phi) < kSame;
+    };
+    if (std::none_of(points->begin(), kept, is_same)) *kept++ = *point;
+  }
+  points->erase(kept, end);
 }
 
 // How the gap of a contact changes in the step.
@@ -81,14 +129,14 @@ const PlanarPoint* FindOverlapping(const Manifold& manifold, const Approach& app
     const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
     if (gap > least) continue;
     if (gap > points[i].phi - kMaxSinking && gap > -kMaxOverlap) continue;
-    if (manifold.Has(points[i].feature)) continue;
+    if (manifold.Has(points[i].key)) continue;
     least = gap;
     deepest = &points[i];
   }
   if (deepest == nullptr) return nullptr;
   for (int i = 0; i < manifold.num_face_points; ++i) {
     const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
-    if (gap < least + kMaxSinking && manifold.Has(points[i].feature)) return nullptr;
+    if (gap < least + kMaxSinking && manifold.Has(points[i].key)) return nullptr;
   }
   return deepest;
 }
@@ -109,15 +157,14 @@ CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(marg
     PREGRASP_CHECK(static_cast<int>(collision.pieces.size()) < kMaxPieces, body.name);
     Vector3 low = Vector3::Constant(1e300), high = -low;
     for (const Convex& piece : collision.pieces) {
-      const auto box =
-          BoundsOf(piece.X_BP.linear(), piece.X_BP.translation(), Vector3::Zero(), piece.half);
+      const auto box = BoundsOf(piece.X_BP.linear(), piece.X_BP.translation(), piece.half);
       low = low.cwiseMin(box.low);
       high = high.cwiseMax(box.high);
     }
     collision.p_BBox = 0.5 * (low + high);
     collision.half = 0.5 * (high - low);
     fixed_bounds_.push_back(
-        BoundsOf(body.X_WB.linear(), body.X_WB.translation(), collision.p_BBox, collision.half));
+        BoundsOf(body.X_WB.linear(), body.X_WB * collision.p_BBox, collision.half));
     if (body.movable()) {
       collision.movable = movable++;
       collision.first_placed = num_movable_pieces_;
@@ -158,6 +205,7 @@ void CollisionScene::PlaceMovables(const std::vector<BodyKernel>& kernels,
                                    Scratch* scratch) const {
   scratch->pieces.resize(num_movable_pieces_);
   scratch->bounds.resize(motions.size());
+  scratch->distances.resize(motions.size());
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const CollisionBody& body = bodies_[kernels[i].body];
     const BodyMotion& motion = motions[i];
@@ -167,25 +215,30 @@ void CollisionScene::PlaceMovables(const std::vector<BodyKernel>& kernels,
       placed.turn_W = dt * motion.w_WB;
       placed.shift_W = dt * motion.v_WBcm + placed.turn_W.cross(placed.p_WP - motion.p_WBcm);
     }
-    scratch->bounds[i] = BoundsOf(motion.R_WB, motion.p_WB, body.p_BBox, body.half);
-    scratch->bounds[i].margin = dt * (motion.v_WBcm.norm() + motion.w_WB.norm() * kernels[i].reach);
+    scratch->bounds[i] =
+        body.pieces.size() == 1
+            ? scratch->pieces[body.first_placed].bounds
+            : BoundsOf(motion.R_WB, motion.p_WB + motion.R_WB * body.p_BBox, body.half);
+    scratch->distances[i] = dt * (motion.v_WBcm.norm() + motion.w_WB.norm() * kernels[i].reach);
   }
 }
 
 void CollisionScene::CollidePair(const Pair& pair, double margin, Scratch* scratch,
-                                 std::span<const WorldState::CachedImpulse>* cache,
+                                 std::span<const WorldState::CachedImpulse> loaded,
                                  std::vector<Contact>* contacts) const {
   const CollisionBody &a = bodies_[pair.a], &b = bodies_[pair.b];
-  const auto placed = [&](const CollisionBody& body) {
-    return (body.movable < 0 ? placed_.data() : scratch->pieces.data()) + body.first_placed;
-  };
-  const PlacedConvex *pieces_a = placed(a), *pieces_b = placed(b);
+  const PlacedConvex *pieces_a = Placed(a, *scratch), *pieces_b = Placed(b, *scratch);
+  const Bounds& bounds_b = GetBounds(pair.b, *scratch);
+  const bool several =
+      a.pieces.size() > 1 || b.pieces.size() > 1;  // or the bodies' are the pieces'
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
+    if (several && !pieces_a[i].bounds.IsWithin(margin, bounds_b)) continue;
     for (std::size_t j = 0; j < b.pieces.size(); ++j) {
+      if (several && !pieces_a[i].bounds.IsWithin(margin, pieces_b[j].bounds)) continue;
       Contact& contact = contacts->emplace_back();
-      contact.key = MakeKey(pair.a, pair.b, static_cast<int>(i), static_cast<int>(j));
+      contact.manifold.key = MakeKey(pair.a, pair.b, static_cast<int>(i), static_cast<int>(j));
+      contact.manifold.loaded = loaded;
       contact.manifold.face_points = &scratch->face_points;
-      TakeLoaded(contact.key, cache, &contact.manifold);
       if (!Collide(pieces_a[i], pieces_b[j], margin, &contact.manifold)) {
         contacts->pop_back();
         continue;
@@ -207,15 +260,56 @@ void CollisionScene::FindContacts(const std::vector<BodyKernel>& kernels,
   std::span<const WorldState::CachedImpulse> cache_left = cache;
   contacts->clear();
   scratch->face_points.clear();
+  const auto distance = [&](int movable) {
+    return movable < 0 ? 0.0 : scratch->distances[movable];
+  };
   for (const Pair& pair : pairs_) {
-    const int movable_a = bodies_[pair.a].movable, movable_b = bodies_[pair.b].movable;
-    const auto& bounds_a = movable_a < 0 ? fixed_bounds_[pair.a] : scratch->bounds[movable_a];
-    const auto& bounds_b = movable_b < 0 ? fixed_bounds_[pair.b] : scratch->bounds[movable_b];
-    const double margin = margin_ + bounds_a.margin + bounds_b.margin;
-    if (Overlaps(bounds_a, bounds_b, margin)) {
-      CollidePair(pair, margin, scratch, &cache_left, contacts);
+    const CollisionBody &a = bodies_[pair.a], &b = bodies_[pair.b];
+    const double margin = margin_ + distance(a.movable) + distance(b.movable);
+    if (GetBounds(pair.a, *scratch).IsWithin(margin, GetBounds(pair.b, *scratch))) {
+      const auto loaded = TakeLoaded(MakeKey(pair.a, pair.b, 0, 0), &cache_left);
+      const std::size_t first = contacts->size();
+      CollidePair(pair, margin, scratch, loaded, contacts);
+      if (contacts->size() > first + 1) MergeCoplanar(first, scratch, contacts);
     }
   }
+}
+
+// Where several pieces of the two bodies touch along one plane, their points make one contact: a
+// cup on a table rests on four points, not on four for each sector of its foot.
+void CollisionScene::MergeCoplanar(std::size_t first, Scratch* scratch,
+                                   std::vector<Contact>* contacts) const {
+  std::size_t kept = first;
+  for (std::size_t i = first; i < contacts->size(); ++i) {
+    Contact& contact = (*contacts)[i];
+    if (contact.manifold.size == 0) continue;  // taken by one before
+    std::vector<PlanarPoint>& points = scratch->merged_points;
+    points.clear();
+    const ContactPlane plane = PlaneOf(contact);
+    CollectPoints(contact.manifold, scratch->face_points, plane, &points);
+    bool merged = false;
+    for (std::size_t j = i + 1; j < contacts->size(); ++j) {
+      Contact& other = (*contacts)[j];
+      if (other.manifold.size == 0 || !IsCoplanar(plane, PlaneOf(other))) continue;
+      if (!CollectPoints(other.manifold, scratch->face_points, plane, &points)) continue;
+      other.manifold.size = 0;
+      merged = true;
+    }
+    if (merged) {
+      Manifold& manifold = contact.manifold;
+      manifold.Clear();
+      manifold.key = 0;  // the points' keys are whole
+      RemoveCopies(&points);
+      // All pieces of a body move as one.
+      const PlacedConvex& a = *Placed(bodies_[contact.body_a], *scratch);
+      const PlacedConvex& b = *Placed(bodies_[contact.body_b], *scratch);
+      AddFacePoints(points.data(), static_cast<int>(points.size()), plane,
+                    Approach(a, b, manifold.nhat_W, plane), &manifold);
+    }
+    if (kept != i) (*contacts)[kept] = contact;
+    ++kept;
+  }
+  contacts->resize(kept);
 }
 
 bool CollisionScene::AddOverlapping(const std::vector<BodyMotion>& motions,
@@ -229,7 +323,8 @@ bool CollisionScene::AddOverlapping(const std::vector<BodyMotion>& motions,
         FindOverlapping(manifold, CalcApproach(contact, motions, steps),
                         scratch.face_points.data() + manifold.first_face_point);
     if (point == nullptr) continue;
-    manifold.Add(manifold.plane.At(point->x, point->y, point->phi), point->phi, point->feature);
+    manifold.points[manifold.size++] = {manifold.plane.At(point->x, point->y, point->phi),
+                                        point->phi, point->key};
     added = true;
   }
   return added;

@@ -12,16 +12,16 @@
 
 namespace pregrasp {
 
-/// A key's lowest bits name a point's feature, the others the two pieces.
-inline constexpr int kFeatureBits = 20;
+/// What two bodies have in common among the keys of their contacts' points.
+inline constexpr std::uint64_t PairOfKey(std::uint64_t key) { return key >> 40; }
 
-/// The contact between two convex pieces of two bodies, in one step.
+/// A contact between two bodies in one step: of two convex pieces, or of several pieces along one
+/// plane.
 struct Contact {
   int movable_a = -1, movable_b = -1;  ///< movable index, -1 for a fixed body
   int body_a = 0, body_b = 0;          ///< scene index, a < b
   double friction = 0.0;
-  std::uint64_t key = 0;  ///< names the pieces; a point's feature is added to it
-  Manifold manifold;      ///< normal from a to b
+  Manifold manifold;  ///< normal from a to b
 };
 
 /// The collision shapes of a scene and the search for contacts between them. Immutable.
@@ -30,12 +30,10 @@ class CollisionScene {
   /// Memory that FindContacts reuses from step to step.
   struct Scratch {
     std::vector<PlacedConvex> pieces;
-    struct Bounds {
-      Vector3 low, high;
-      double margin;
-    };
-    std::vector<Bounds> bounds;
+    std::vector<Bounds> bounds;            ///< by movable
+    std::vector<double> distances;         ///< that its points go in a step at most [m], by movable
     std::vector<PlanarPoint> face_points;  ///< of contacts that leave some out
+    std::vector<PlanarPoint> merged_points;
   };
 
   CollisionScene(const Scene& scene, double margin);
@@ -73,16 +71,25 @@ class CollisionScene {
     double friction;
   };
 
+  /// The pieces of a body at their poses.
+  const PlacedConvex* Placed(const CollisionBody& body, const Scratch& scratch) const {
+    return (body.movable < 0 ? placed_.data() : scratch.pieces.data()) + body.first_placed;
+  }
+  const Bounds& GetBounds(int body, const Scratch& scratch) const {
+    const int movable = bodies_[body].movable;
+    return movable < 0 ? fixed_bounds_[body] : scratch.bounds[movable];
+  }
   void PlaceMovables(const std::vector<BodyKernel>& kernels, const std::vector<BodyMotion>& motions,
                      double dt, Scratch* scratch) const;
   void CollidePair(const Pair& pair, double margin, Scratch* scratch,
-                   std::span<const WorldState::CachedImpulse>* cache,
+                   std::span<const WorldState::CachedImpulse> loaded,
                    std::vector<Contact>* contacts) const;
+  void MergeCoplanar(std::size_t first, Scratch* scratch, std::vector<Contact>* contacts) const;
 
   double margin_;
   std::vector<CollisionBody> bodies_;
-  std::vector<PlacedConvex> placed_;           ///< pieces of fixed bodies
-  std::vector<Scratch::Bounds> fixed_bounds_;  ///< by scene index; movables unset
+  std::vector<PlacedConvex> placed_;  ///< pieces of fixed bodies
+  std::vector<Bounds> fixed_bounds_;  ///< by scene index; movables unset
   std::vector<Pair> pairs_;
   int num_movable_pieces_ = 0;
 };

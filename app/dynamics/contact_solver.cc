@@ -141,25 +141,21 @@ class StopRule {
 };
 
 // The impulses that the contact's points bore in the last step; null for those that bore none.
-// Takes them and all before them off `cache`, which is in the order of the keys.
-void FindImpulses(const Contact& contact, std::span<const WorldState::CachedImpulse>* cache,
-                  std::array<const Vector3*, Manifold::kMaxPoints>* impulses_W) {
-  const std::uint64_t pieces = contact.key >> kFeatureBits;
-  const WorldState::CachedImpulse *begin = cache->data(), *end = begin + cache->size();
-  while (begin != end && begin->key >> kFeatureBits < pieces) ++begin;
-  const WorldState::CachedImpulse* last = begin;
-  while (last != end && last->key >> kFeatureBits == pieces) ++last;
-  const WorldState::CachedImpulse* next = begin;  // points keep their order as a rule
+// Looks in the two bodies' part of the cache, from `next` on first, as points keep their order as a
+// rule.
+void FindImpulses(const Contact& contact, std::span<const WorldState::CachedImpulse> cached,
+                  std::size_t* next, std::array<const Vector3*, Manifold::kMaxPoints>* impulses_W) {
   for (int k = 0; k < contact.manifold.size; ++k) {
-    const std::uint64_t key = contact.key + contact.manifold.points[k].feature;
-    const auto is_it = [key](const WorldState::CachedImpulse& cached) { return cached.key == key; };
-    const WorldState::CachedImpulse* found = std::find_if(next, last, is_it);
-    if (found == last) found = std::find_if(begin, next, is_it);
-    const bool bore_load = found != last && found->key == key;
-    (*impulses_W)[k] = bore_load ? &found->impulse_W : nullptr;
-    if (bore_load) next = found + 1;
+    const std::uint64_t key = contact.manifold.points[k].key;
+    (*impulses_W)[k] = nullptr;
+    for (std::size_t n = 0, i = *next; n < cached.size(); ++n, ++i) {
+      if (i >= cached.size()) i = 0;
+      if (cached[i].key != key) continue;
+      (*impulses_W)[k] = &cached[i].impulse_W;
+      *next = i + 1;
+      break;
+    }
   }
-  *cache = {last, end};
 }
 
 }  // namespace
@@ -183,13 +179,24 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
   if (rows_memory_.size() < contacts.size()) rows_memory_.resize(contacts.size());
   rows_ = std::span(rows_memory_.data(), contacts.size());
   std::span<PointRows> points_left(point_memory_.data(), num_points);
-  std::span<const WorldState::CachedImpulse> cache_left = cache;
+  std::span<const WorldState::CachedImpulse> cache_left = cache, cached;
+  std::size_t next = 0;  // in `cached`, the part of the two bodies
   std::array<const Vector3*, Manifold::kMaxPoints> start_W;
   crowded_ = false;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const std::size_t size = contacts[c].manifold.size;
     crowded_ = crowded_ || contacts[c].manifold.crowded;
-    FindImpulses(contacts[c], &cache_left, &start_W);
+    const std::uint64_t pair = PairOfKey(contacts[c].manifold.points[0].key);
+    if (c == 0 || pair != PairOfKey(contacts[c - 1].manifold.points[0].key)) {
+      const auto before = [](const WorldState::CachedImpulse& cached) {
+        return PairOfKey(cached.key);
+      };
+      const auto range = std::ranges::equal_range(cache_left, pair, {}, before);
+      cached = {range.begin(), range.end()};
+      cache_left = {range.end(), cache_left.end()};
+      next = 0;
+    }
+    FindImpulses(contacts[c], cached, &next, &start_W);
     rows_[c].Set(kernels, motions, contacts[c], start_W, points_left.first(size), y_start_.data());
     rows_[c].SetPairs(num_points > kMaxPairedPoints);
     SetBias(config, rows_[c]);
@@ -379,8 +386,7 @@ void ContactSolver::SaveImpulses(const std::vector<Contact>& contacts,
     for (std::size_t k = 0; k < rows.points.size(); ++k) {
       const PointImpulse& lambda = rows.points[k].lambda;
       if (lambda.n <= 0.0) continue;
-      cache->push_back(
-          {contacts[c].key + contacts[c].manifold.points[k].feature, rows.ToWorld(lambda)});
+      cache->push_back({contacts[c].manifold.points[k].key, rows.ToWorld(lambda)});
     }
   }
 }

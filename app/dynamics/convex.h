@@ -52,12 +52,24 @@ struct Convex {
 /// @throws InputError if the shape holds a piece without volume.
 std::vector<Convex> BuildConvexPieces(const Shape& shape);
 
+/// A box along W's axes [m].
+struct Bounds {
+  Vector3 low = Vector3::Zero(), high = Vector3::Zero();
+
+  bool IsWithin(double distance, const Bounds& other) const {
+    return low.x() - other.high.x() <= distance && other.low.x() - high.x() <= distance &&
+           low.y() - other.high.y() <= distance && other.low.y() - high.y() <= distance &&
+           low.z() - other.high.z() <= distance && other.low.z() - high.z() <= distance;
+  }
+};
+
 /// A piece at its pose in the world, within one step, and how far the step takes it if nothing is
 /// in its way.
 struct PlacedConvex {
   const Convex* convex = nullptr;
   Matrix3 R_WP = Matrix3::Identity();
   Vector3 p_WP = Vector3::Zero();
+  Bounds bounds;
   Vector3 shift_W = Vector3::Zero();  ///< of its origin [m]
   Vector3 turn_W = Vector3::Zero();   ///< [rad], small
 };

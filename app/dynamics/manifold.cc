@@ -14,8 +14,8 @@ constexpr double kDepthTie = 2e-6;
 constexpr double kInPlane = 1e-7;
 // Relative difference below which two distances or areas count as equal.
 constexpr double kSizeTie = 1e-6;
-// Twice the area of a triangle that holds nothing [m^2].
-constexpr double kMinArea = 1e-14;
+// Points this near to a line through two others [m] add nothing to them.
+constexpr double kOnLine = 1e-7;
 
 // A linear function of the tangent plane: twice the signed area of the triangle that a point makes
 // with two others.
@@ -33,7 +33,7 @@ int FindLargest(const double* values, int count, double least) {
   double limit = least;
   for (int i = 0; i < count; ++i) {
     if (values[i] <= limit) continue;
-    limit = values[i] * (1.0 + kSizeTie) + kMinArea;
+    limit = values[i] * (1.0 + kSizeTie);
     largest = i;
   }
   return largest;
@@ -58,7 +58,7 @@ int ChooseFour(const PlanarPoint* points, int count, const Approach& approach, i
   for (int i = 0; i < count; ++i) {
     value[i] = (x[i] - p0.x) * (x[i] - p0.x) + (y[i] - p0.y) * (y[i] - p0.y);
   }
-  const int second = FindLargest(value.data(), count, 0.0);
+  const int second = FindLargest(value.data(), count, kOnLine * kOnLine);
   chosen[0] = first;
   if (second < 0) return 1;
   chosen[1] = second;
@@ -66,7 +66,8 @@ int ChooseFour(const PlanarPoint* points, int count, const Approach& approach, i
 
   const SignedArea base(p0, p1);
   for (int i = 0; i < count; ++i) value[i] = std::abs(base.At(x[i], y[i]));
-  const int third = FindLargest(value.data(), count, kMinArea);
+  const double min_area = kOnLine * std::hypot(base.dx, base.dy);
+  const int third = FindLargest(value.data(), count, min_area);
   if (third < 0) return 2;
   chosen[2] = third;
   const PlanarPoint& p2 = points[third];
@@ -79,7 +80,7 @@ int ChooseFour(const PlanarPoint* points, int count, const Approach& approach, i
     const double outside_2 = -sign * side_2.At(x[i], y[i]);
     value[i] = std::max(outside_0, std::max(outside_1, outside_2));
   }
-  const int fourth = FindLargest(value.data(), count, kMinArea);
+  const int fourth = FindLargest(value.data(), count, min_area);
   if (fourth < 0) return 3;
   chosen[3] = fourth;
   return 4;
@@ -112,9 +113,9 @@ int ChoosePoints(const PlanarPoint* points, int count, const Approach& approach,
   manifold->crowded = !std::all_of(points, points + count,
                                    [&plane](const PlanarPoint& p) { return plane.Holds(p); });
   if (!manifold->crowded) return size;
-  for (const std::uint32_t feature : manifold->loaded_features()) {
+  for (const WorldState::CachedImpulse& loaded : manifold->loaded) {
     if (size == Manifold::kMaxPoints) break;
-    const auto is_it = [&](int i) { return points[i].feature == feature; };
+    const auto is_it = [&](int i) { return manifold->key + points[i].key == loaded.key; };
     if (std::any_of(chosen->data(), chosen->data() + size, is_it)) continue;
     int i = 0;
     while (i < count && !is_it(i)) ++i;
@@ -125,10 +126,11 @@ int ChoosePoints(const PlanarPoint* points, int count, const Approach& approach,
 
 }  // namespace
 
-Approach::Approach(const PlacedConvex& a, const PlacedConvex& b, const ContactPlane& plane)
+Approach::Approach(const PlacedConvex& a, const PlacedConvex& b, const Vector3& nhat_W,
+                   const ContactPlane& plane)
     : Approach(b.shift_W + b.turn_W.cross(plane.p_WO - b.p_WP) - a.shift_W -
                    a.turn_W.cross(plane.p_WO - a.p_WP),
-               b.turn_W - a.turn_W, plane.nhat_W, plane) {}
+               b.turn_W - a.turn_W, nhat_W, plane) {}
 
 Approach::Approach(const Vector3& shift_W, const Vector3& turn_W, const Vector3& nhat_W,
                    const ContactPlane& plane)
@@ -139,7 +141,7 @@ Approach::Approach(const Vector3& shift_W, const Vector3& turn_W, const Vector3&
 void AddFacePoints(const PlanarPoint* points, int count, const ContactPlane& plane,
                    const Approach& approach, Manifold* manifold) {
   const auto add = [&](const PlanarPoint& point) {
-    manifold->Add(plane.At(point.x, point.y, point.phi), point.phi, point.feature);
+    manifold->Add(plane.At(point.x, point.y, point.phi), point.phi, point.key);
   };
   if (count <= kNumCorners) {
     std::for_each(points, points + count, add);
@@ -152,7 +154,10 @@ void AddFacePoints(const PlanarPoint* points, int count, const ContactPlane& pla
   manifold->plane = plane;
   manifold->first_face_point = static_cast<int>(manifold->face_points->size());
   manifold->num_face_points = count;
-  manifold->face_points->insert(manifold->face_points->end(), points, points + count);
+  for (int i = 0; i < count; ++i) {
+    const PlanarPoint& point = points[i];
+    manifold->face_points->push_back({point.x, point.y, point.phi, manifold->key + point.key});
+  }
 }
 
 }  // namespace pregrasp

@@ -8,14 +8,15 @@
 
 #include "app/core/math.h"
 #include "app/dynamics/convex.h"
+#include "app/dynamics/world.h"
 
 namespace pregrasp {
 
 /// One point of a manifold. `p_W` lies midway between the two surfaces.
 struct ManifoldPoint {
   Vector3 p_W;
-  double phi;             ///< gap along the normal [m], negative when the shapes overlap
-  std::uint32_t feature;  ///< names the pair of features, to find its impulse in the next step
+  double phi;         ///< gap along the normal [m], negative when the shapes overlap
+  std::uint64_t key;  ///< names the pieces and their features, to find its impulse in the next step
 };
 
 /// The plane of a contact between faces. x and y are coordinates in the tangent plane; the axes lie
@@ -33,9 +34,9 @@ struct ContactPlane {
 
 /// A point of a face that may still be left out: its place in the contact's plane.
 struct PlanarPoint {
-  double x = 0.0, y = 0.0;  ///< [m]
-  double phi = 0.0;
-  std::uint32_t feature = 0;
+  double x, y;  ///< [m]
+  double phi;
+  std::uint64_t key;
 };
 
 /// The most points of a face.
@@ -49,8 +50,9 @@ struct Manifold {
   Vector3 nhat_W = Vector3::UnitZ();  ///< from A to B
   int size = 0;
   std::array<ManifoldPoint, kMaxPoints> points;
-  int num_loaded = 0;
-  std::array<std::uint32_t, kMaxPoints> loaded;  ///< features that bore load in the last step
+  std::uint64_t key = 0;  ///< names the pieces; the points' features are added to it
+  /// Points of the two bodies that bore load in the last step, of other pieces too.
+  std::span<const WorldState::CachedImpulse> loaded;
   bool crowded = false;  ///< some of the face's points are not in the plane of the four
 
   /// All points of the face, if some of them are left out and there is a place for them.
@@ -62,15 +64,12 @@ struct Manifold {
     size = num_face_points = 0;
     crowded = false;
   }
-  std::span<const std::uint32_t> loaded_features() const {
-    return {loaded.data(), static_cast<std::size_t>(num_loaded)};
+  void Add(const Vector3& p_W, double phi, std::uint64_t feature) {
+    points[size++] = {p_W, phi, key + feature};
   }
-  void Add(const Vector3& p_W, double phi, std::uint32_t feature) {
-    points[size++] = {p_W, phi, feature};
-  }
-  bool Has(std::uint32_t feature) const {
+  bool Has(std::uint64_t point_key) const {
     return std::any_of(points.begin(), points.begin() + size,
-                       [feature](const ManifoldPoint& point) { return point.feature == feature; });
+                       [point_key](const ManifoldPoint& p) { return p.key == point_key; });
   }
 };
 
@@ -78,8 +77,9 @@ struct Manifold {
 struct Approach {
   double at_origin = 0.0, per_x = 0.0, per_y = 0.0;
 
-  /// @param plane  its normal points from a to b.
-  Approach(const PlacedConvex& a, const PlacedConvex& b, const ContactPlane& plane);
+  /// @param nhat_W  from a to b.
+  Approach(const PlacedConvex& a, const PlacedConvex& b, const Vector3& nhat_W,
+           const ContactPlane& plane);
   /// @param shift_W, turn_W  how b moves relative to a, at the plane's origin.
   /// @param nhat_W           from a to b.
   Approach(const Vector3& shift_W, const Vector3& turn_W, const Vector3& nhat_W,
@@ -88,13 +88,13 @@ struct Approach {
   double At(double x, double y) const { return at_origin + per_x * x + per_y * y; }
 };
 
-/// Adds those of a face's points (kMaxPlanarPoints at most) that are chosen. Four at most stand for
-/// all: the deepest at the end of the step, the farthest from it, the one that makes the largest
-/// triangle, and the one farthest outside that triangle. Ties within a tolerance go to the lower
-/// index, so that the choice does not flicker. Those that bore load in the last step are kept too
-/// where they are not in the plane of the four, as room allows: of a crowd of points almost in a
-/// plane the body rests on three, and they must stay while the four change.
-/// All points are kept in `face_points` if some of them are left out.
+/// Adds those of a face's points (kMaxPlanarPoints at most, named by their features) that are
+/// chosen. Four at most stand for all: the deepest at the end of the step, the farthest from it,
+/// the one that makes the largest triangle, and the one farthest outside that triangle. Ties within
+/// a tolerance go to the lower index, so that the choice does not flicker. Those that bore load in
+/// the last step are kept too where they are not in the plane of the four, as room allows: of a
+/// crowd of points almost in a plane the body rests on three, and they must stay while the four
+/// change. All points are kept in `face_points` if some of them are left out.
 void AddFacePoints(const PlanarPoint* points, int count, const ContactPlane& plane,
                    const Approach& approach, Manifold* manifold);
 

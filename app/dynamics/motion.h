@@ -13,15 +13,13 @@ struct BodyKernel {
   double mass = 0.0;  ///< [kg]
   Vector3 p_BoBcm = Vector3::Zero();
   Matrix3 R_BP = Matrix3::Identity();
-  bool is_aligned = true;             ///< R_BP is the identity
+  bool is_aligned = true;         ///< R_BP is the identity
   Vector3 I_P = Vector3::Zero();  ///< principal moments [kg m^2]
   double inv_mass = 0.0;
   Vector3 inv_sqrt_I_P = Vector3::Zero();
   double reach = 0.0;  ///< largest distance of a point of the shape from the centre of mass [m]
 
-  Matrix3 CalcR_WP(const Matrix3& R_WB) const {
-    return is_aligned ? R_WB : Matrix3(R_WB * R_BP);
-  }
+  Matrix3 CalcR_WP(const Matrix3& R_WB) const { return is_aligned ? R_WB : Matrix3(R_WB * R_BP); }
 };
 
 /// Builds the derived constants. Axes that are principal already are kept exactly.

@@ -77,7 +77,7 @@ class Overlap {
       : R_WT_(FrameFromNormal(nhat_W)),
         origin_(feature_a.points[0]),
         plane_{origin_, R_WT_.col(0), R_WT_.col(1), R_WT_.col(2)},
-        approach_(a, b, plane_) {
+        approach_(a, b, nhat_W, plane_) {
     Project(feature_a, &a_);
     Project(feature_b, &b_);
   }
