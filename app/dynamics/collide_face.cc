@@ -88,7 +88,7 @@ void AddCapsulePoints(const FacePlane& plane, Manifold* manifold) {
 // All vertices near the plane, the lowest first so that a crowd cannot push it out; seen from q's
 // origin.
 void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
-  constexpr int kMaxVertices = 64;
+  constexpr int kBlock = 64;
   const Polytope& polytope = *plane.q.convex->polytope;
   const std::vector<Vector3>& vertices = polytope.vertices;
   const int ix = (plane.i + 1) % 3, iy = (plane.i + 2) % 3;
@@ -96,13 +96,13 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   const Vector3 x = plane.R_AQ.row(ix), y = plane.R_AQ.row(iy);
   const double base = plane.s * plane.p_AQ[plane.i] - plane.a.convex->half[plane.i];
   const double limit = plane.margin - base;
-  std::array<PlanarPoint, kMaxVertices + 1> points;
+  std::array<PlanarPoint, kMaxPlanarPoints> points;
   int count = 1, lowest = 0;  // the first place is the lowest vertex's
   double lowest_height = n.dot(vertices[0]);
-  std::array<double, kMaxVertices> heights;
+  std::array<double, kBlock> heights;
   const int num_vertices = static_cast<int>(vertices.size());
-  for (int first = 0; first < num_vertices; first += kMaxVertices) {
-    const int block = std::min(kMaxVertices, num_vertices - first);
+  for (int first = 0; first < num_vertices; first += kBlock) {
+    const int block = std::min(kBlock, num_vertices - first);
     const double *vx = polytope.x.data() + first, *vy = polytope.y.data() + first,
                  *vz = polytope.z.data() + first;
     for (int i = 0; i < block; ++i) heights[i] = n.x() * vx[i] + n.y() * vy[i] + n.z() * vz[i];
@@ -112,7 +112,7 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
         lowest_height = height;
         lowest = first + i;
       }
-      if (height > limit || count > kMaxVertices) continue;
+      if (height > limit || count == kMaxPlanarPoints) continue;
       const Vector3& vertex = vertices[first + i];
       points[count++] = {x.dot(vertex), y.dot(vertex), base + height,
                          static_cast<std::uint32_t>(first + i) | plane.flag};

@@ -50,8 +50,8 @@ class CollisionScene {
                     const std::vector<WorldState::CachedImpulse>& cache, double dt,
                     Scratch* scratch, std::vector<Contact>* contacts) const;
 
-  /// Adds to each contact the point that the shapes would overlap at most after the step, of those
-  /// left out, if any would by more than a micrometre.
+  /// Adds to each contact the point left out that would overlap most after the step, if any would
+  /// sink in and deeper than those that are not left out.
   /// @param steps  one per movable: how the step takes it once `contacts` have acted.
   /// @returns whether there is one.
   static bool AddOverlapping(const std::vector<BodyMotion>& motions,
