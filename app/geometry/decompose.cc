@@ -25,6 +25,7 @@ namespace pregrasp {
 namespace {
 
 constexpr int kTrials = 4;        // cuts that are tried out, the best by pairs
+constexpr int kSwaps = 16;        // of one cut for another, after merging
 constexpr double kOvercut = 1.6;  // pieces before merging, in multiples of those wanted
 
 class Decomposer {
@@ -131,7 +132,7 @@ class Decomposer {
 
   // Cuts the worst piece and joins two others in exchange, while that makes the worst less bad.
   void Improve() {
-    for (int round = 0; round < 2 * config_.max_pieces; ++round) {
+    for (int round = 0; round < kSwaps; ++round) {
       const int worst = FindWorst();
       if (worst < 0) return;
       const double before = pieces_[worst].protrusion;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/dynamics/world.h"
+#include "app/geometry/hull.h"
 #include "app/geometry/mass_properties.h"
 #include "app/geometry/overlap.h"
 #include "app/geometry/tessellate.h"
@@ -16,7 +17,8 @@ namespace {
 using Severity = CheckFinding::Severity;
 
 constexpr double kLargeObject = 2.0, kSmallObject = 0.002;  // [m], longest edge of its box
-constexpr double kLightest = 20.0, kHeaviest = 20000.0;     // [kg/m^3]: foam, osmium
+constexpr double kWidePieces = 1e-3;  // [m], how far pieces may reach outside their shape
+constexpr double kLightest = 20.0, kHeaviest = 20000.0;  // [kg/m^3]: foam, osmium
 
 class Checker {
  public:
@@ -26,6 +28,7 @@ class Checker {
     CheckOverlaps();
     if (findings_.empty()) CheckRest();  // what overlaps is pushed apart and never at rest
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) CheckUnits(scene_.bodies[i], i == 0);
+    for (const Body& body : scene_.bodies) CheckPieces(body);
     for (const std::string& departure : RuleDepartures(scene_)) {
       Add(Severity::kWarning, WhereOf(departure),
           departure + ": the results count as outside the rules");
@@ -105,6 +108,16 @@ class Checker {
                       "kg, are its sizes in metres?)",
                       body.name, density, mass));
     }
+  }
+
+  // Contact simulation sees a shape's convex pieces.
+  void CheckPieces(const Body& body) {
+    const double protrusion = CalcProtrusion(body.shape, DecomposeConvex(body.shape));
+    if (protrusion < kWidePieces) return;
+    Add(Severity::kWarning, body.where,
+        fmt::format("\"{}\" is {:.1f} mm thicker in contact than its mesh in places: it takes too "
+                    "many convex pieces",
+                    body.name, 1e3 * protrusion));
   }
 
   const Scene& scene_;
