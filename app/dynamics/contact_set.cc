@@ -27,13 +27,11 @@ Bounds BoundsOf(const Matrix3& R_WB, const Vector3& p_WBox, const Vector3& half)
   return {p_WBox - extent, p_WBox + extent};
 }
 
-PlacedConvex Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_WB) {
-  PlacedConvex placed;
-  placed.convex = &convex;
-  placed.R_WP = convex.is_aligned ? R_WB : Matrix3(R_WB * convex.X_BP.linear());
-  placed.p_WP = p_WB + R_WB * convex.X_BP.translation();
-  placed.bounds = BoundsOf(placed.R_WP, placed.p_WP, convex.half);
-  return placed;
+void Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_WB, PlacedConvex* placed) {
+  placed->convex = &convex;
+  placed->R_WP = convex.is_aligned ? R_WB : Matrix3(R_WB * convex.X_BP.linear());
+  placed->p_WP = p_WB + R_WB * convex.X_BP.translation();
+  placed->bounds = BoundsOf(placed->R_WP, placed->p_WP, convex.half);
 }
 
 // The points of two bodies that bore load. Takes them and all before them off `cache`, which is in
@@ -172,7 +170,7 @@ CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(marg
     } else {
       collision.first_placed = static_cast<int>(placed_.size());
       for (const Convex& piece : collision.pieces) {
-        placed_.push_back(Place(piece, body.X_WB.linear(), body.X_WB.translation()));
+        Place(piece, body.X_WB.linear(), body.X_WB.translation(), &placed_.emplace_back());
       }
     }
   }
@@ -211,7 +209,7 @@ void CollisionScene::PlaceMovables(const std::vector<BodyKernel>& kernels,
     const BodyMotion& motion = motions[i];
     for (std::size_t k = 0; k < body.pieces.size(); ++k) {
       PlacedConvex& placed = scratch->pieces[body.first_placed + k];
-      placed = Place(body.pieces[k], motion.R_WB, motion.p_WB);
+      Place(body.pieces[k], motion.R_WB, motion.p_WB, &placed);
       placed.turn_W = dt * motion.w_WB;
       placed.shift_W = dt * motion.v_WBcm + placed.turn_W.cross(placed.p_WP - motion.p_WBcm);
     }
