@@ -15,6 +15,9 @@ constexpr int kMaxBodies = 1 << 12, kMaxPieces = 1 << 10, kFeatureBits = 20;
 // Overlap that the solver leaves alone anyway [m].
 constexpr double kMaxOverlap = 1e-6;
 constexpr double kMaxSinking = 1e-7;
+// Depths [m] closer than this count as equal: below it rounding errors would choose between the
+// corners that two pieces have in common.
+constexpr double kDepthTie = 1e-9;
 
 std::uint64_t MakeKey(int body_a, int body_b, int piece_a, int piece_b) {
   return (static_cast<std::uint64_t>(body_a) << 52) | (static_cast<std::uint64_t>(body_b) << 40) |
@@ -125,7 +128,7 @@ const PlanarPoint* FindOverlapping(const Manifold& manifold, const Approach& app
   double least = -kMaxSinking;
   for (int i = 0; i < manifold.num_face_points; ++i) {
     const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
-    if (gap > least) continue;
+    if (gap > (deepest == nullptr ? least : least - kDepthTie)) continue;
     if (gap > points[i].phi - kMaxSinking && gap > -kMaxOverlap) continue;
     if (manifold.Has(points[i].key)) continue;
     least = gap;
