@@ -117,12 +117,12 @@ double SweepCorrections(const ContactRows& rows, BodyVelocity* z) {
   });
 }
 
-// Says when to stop sweeping. Of a crowd of points in which a body rests on a few that are near
-// each other, sweeps converge so slowly that much is still to come when they change little: there
-// what is to come is bounded, as the sum of a geometric series.
+// Says when to stop sweeping. In a crowd of points in which a body rests on a few that are near
+// each other, and in stacks of bodies, sweeps converge so slowly that much is still to come when
+// they change little: there what is to come is bounded, as the sum of a geometric series.
 class StopRule {
  public:
-  StopRule(double tolerance, bool crowded) : tolerance_(tolerance), crowded_(crowded) {}
+  StopRule(double tolerance, bool is_slow) : tolerance_(tolerance), is_slow_(is_slow) {}
 
   /// @param change  largest change of an impulse over the mass in a sweep [m/s].
   bool IsMet(double change) {
@@ -130,13 +130,13 @@ class StopRule {
     const double rate =
         before_last_ > 0.0 ? std::min(kSlowest, std::sqrt(change / before_last_)) : kSlowest;
     before_last_ = std::exchange(last_, change);
-    return change < tolerance_ && (!crowded_ || change * rate < tolerance_ * (1.0 - rate));
+    return change < tolerance_ && (!is_slow_ || change * rate < tolerance_ * (1.0 - rate));
   }
 
  private:
   static constexpr double kSlowest = 0.99;
   const double tolerance_;
-  const bool crowded_;
+  const bool is_slow_;
   double last_ = 0.0, before_last_ = 0.0;
 };
 
@@ -246,7 +246,8 @@ void ContactSolver::Solve(const StepConfig& config, const FingertipLaw& law) {
   constexpr int kMoreSweeps = 5;  // as many times, in a crowd of points
   const int max_sweeps =
       (y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many) * (crowded_ ? kMoreSweeps : 1);
-  StopRule stop(config.tolerance, crowded_);
+  StopRule stop(y_.size() <= 2 ? config.tolerance : config.tolerance_many,
+                crowded_ || y_.size() > 1);
   // On one body, sweeping to and fro converges faster. Along a row of bodies it does not: a push
   // travels in the order of the contacts.
   const bool alternate = y_.size() == 1;

@@ -82,6 +82,7 @@ void Advance(const BodyKernel& kernel, const BodyMotion& motion, const BodyVeloc
 void StepConfig::Validate() const {
   RequireRange("dt", dt, 1e-6, 0.02);
   RequireRange("tolerance", tolerance, 0.0, 1.0);
+  RequireRange("tolerance_many", tolerance_many, 0.0, 1.0);
   RequireRange("max_sweeps", max_sweeps, 1, 1e6);
   RequireRange("max_sweeps_many", max_sweeps_many, 1, 1e6);
   RequireRange("margin", margin, 0.0, 0.01);

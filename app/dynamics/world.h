@@ -16,8 +16,9 @@ struct StepConfig {
   double dt = 1.0 / 240.0;  ///< [s]
   double tolerance = 1e-5;  ///< largest change of a contact's impulse over the body's mass at which
                             ///< sweeps stop [m/s]
-  int max_sweeps = 20;      ///< projected Gauss-Seidel sweeps for one movable body
-  int max_sweeps_many = 50;  ///< the same for more than two movable bodies
+  double tolerance_many = 5e-6;  ///< the same for more than two movable bodies
+  int max_sweeps = 20;           ///< projected Gauss-Seidel sweeps for one movable body
+  int max_sweeps_many = 50;      ///< the same for more than two movable bodies
   /// Distance at which bodies at rest count as in contact [m]; what a step can cover is added, so
   /// that bodies stop at a surface and not inside it.
   double margin = 1e-4;

@@ -312,6 +312,7 @@ void Session::Finish(JournalWriter& writer, const std::optional<std::string>& st
   const StepConfig& step = world_->config();
   outcome.configuration["dynamics"] = {{"dt", step.dt},
                                        {"tolerance", step.tolerance},
+                                       {"tolerance_many", step.tolerance_many},
                                        {"max_sweeps", step.max_sweeps},
                                        {"max_sweeps_many", step.max_sweeps_many},
                                        {"margin", step.margin},

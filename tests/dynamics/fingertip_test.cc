@@ -9,8 +9,6 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kIndex = static_cast<int>(Finger::kIndex);
-
 // A cube that walls hold on all sides, so that the finger's law is seen alone.
 Scene MakeHeldCube() {
   return MakeScene(MakeBox("cube", Vector3(0.1, 0.1, 0.1), At(0, 0, 0.05), 0.5, 0.5),

@@ -10,8 +10,6 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kIndex = static_cast<int>(Finger::kIndex);
-
 World MakeBoxWorld() {
   return World(MakeScene(MakeBox("box", Vector3(0.1, 0.08, 0.06), At(0, 0, 0.03), 0.3, 0.3)));
 }

@@ -16,6 +16,9 @@
 
 namespace pregrasp {
 
+/// The finger that most tests push with.
+inline constexpr int kIndex = static_cast<int>(Finger::kIndex);
+
 // Scenes that the tests of app/dynamics share, built in code: SI units.
 
 inline constexpr double kGravity = 9.81;

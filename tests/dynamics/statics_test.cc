@@ -11,8 +11,6 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kIndex = static_cast<int>(Finger::kIndex);
-
 TEST(StaticsTest, ABoxAtRestDriftsLessThanAMicrometreInFiveSeconds) {
   for (const double yaw : {0.0, 10.0, 45.0}) {
     const World world(MakeScene(MakeBox("box", Vector3(0.1, 0.08, 0.06),
