@@ -210,21 +210,20 @@ class BoxPair {
     if (IsSliver(polygon, half[ix], half[iy])) return FaceResult::kSliver;
 
     manifold->nhat_W = (flip ? -s : s) * ref.R_WP.col(i);
-    std::array<PlanarPoint, 8> points;
-    int count = 0;
+    FacePoints own;
+    FacePoints& points = manifold->store != nullptr ? *manifold->store->Next() : own;
     for (int n = 0; n < polygon.size; ++n) {
       const ClipPoint& point = polygon.points[n];
       if (point.height > margin_) continue;
       const std::uint32_t in = polygon.points[n == 0 ? polygon.size - 1 : n - 1].edge;
       const bool is_corner = point.edge < 4 && in < 4;
-      points[count++] = {
-          point.x, point.y, point.height,
-          (is_corner ? corner[point.edge] : 32U + 8U * in + point.edge) | (flip ? kFaceOfB : 0U)};
+      const std::uint32_t id = is_corner ? corner[point.edge] : 32U + 8U * in + point.edge;
+      points.Add(point.x, point.y, point.height, id | (flip ? kFaceOfB : 0U));
     }
-    if (count == 0) return FaceResult::kApart;
+    if (points.size == 0) return FaceResult::kApart;
     const ContactPlane plane{ref.p_WP + s * half[i] * ref.R_WP.col(i), ref.R_WP.col(ix),
                              ref.R_WP.col(iy), s * ref.R_WP.col(i)};
-    AddFacePoints(points.data(), count, plane, Approach(ref, inc, plane.nhat_W, plane), manifold);
+    AddFacePoints(points, plane, Approach(ref, inc, plane.nhat_W, plane), manifold);
     return FaceResult::kTouching;
   }
 

@@ -85,8 +85,7 @@ void AddCapsulePoints(const FacePlane& plane, Manifold* manifold) {
   if (q.half_height > 0.0) plane.Add(p + axis, 1, manifold);
 }
 
-// All vertices near the plane, the lowest first so that a crowd cannot push it out; seen from q's
-// origin.
+// All vertices near the plane, seen from q's origin.
 void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   constexpr int kBlock = 64;
   const Polytope& polytope = *plane.q.convex->polytope;
@@ -96,39 +95,44 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   const Vector3 x = plane.R_AQ.row(ix), y = plane.R_AQ.row(iy);
   const double base = plane.s * plane.p_AQ[plane.i] - plane.a.convex->half[plane.i];
   const double limit = plane.margin - base;
-  std::array<PlanarPoint, kMaxPlanarPoints> points;
-  int count = 1, lowest = 0;  // the first place is the lowest vertex's
-  double lowest_height = n.dot(vertices[0]);
-  std::array<double, kBlock> heights;
+  FacePoints own;
+  FacePoints& points = manifold->store != nullptr ? *manifold->store->Next() : own;
+  const auto add = [&](int i, double height) {
+    points.Add(x.dot(vertices[i]), y.dot(vertices[i]), base + height,
+               static_cast<std::uint32_t>(i) | plane.flag);
+  };
+  int lowest = -1;
+  double lowest_height = limit;
+  std::array<double, kBlock> memory;
   const int num_vertices = static_cast<int>(vertices.size());
   for (int first = 0; first < num_vertices; first += kBlock) {
     const int block = std::min(kBlock, num_vertices - first);
-    const double *vx = polytope.x.data() + first, *vy = polytope.y.data() + first,
-                 *vz = polytope.z.data() + first;
-    for (int i = 0; i < block; ++i) heights[i] = n.x() * vx[i] + n.y() * vy[i] + n.z() * vz[i];
+    const auto numbers = [&](const std::vector<double>& all) {
+      return Eigen::Map<const Eigen::ArrayXd>(all.data() + first, block);
+    };
+    Eigen::Map<Eigen::ArrayXd> heights(memory.data(), block);
+    heights =
+        n.x() * numbers(polytope.x) + n.y() * numbers(polytope.y) + n.z() * numbers(polytope.z);
+    if (heights.minCoeff() > limit) continue;
     for (int i = 0; i < block; ++i) {
-      const double height = heights[i];
-      if (height < lowest_height) {
-        lowest_height = height;
+      if (heights[i] > limit) continue;
+      if (lowest < 0 || heights[i] < lowest_height) {
+        lowest_height = heights[i];
         lowest = first + i;
       }
-      if (height > limit || count == kMaxPlanarPoints) continue;
-      const Vector3& vertex = vertices[first + i];
-      points[count++] = {x.dot(vertex), y.dot(vertex), base + height,
-                         static_cast<std::uint32_t>(first + i) | plane.flag};
+      if (points.size < FacePoints::kMaxSize) add(first + i, heights[i]);
     }
   }
-  if (lowest_height > limit) return;
-  points[0] = {x.dot(vertices[lowest]), y.dot(vertices[lowest]), base + lowest_height,
-               static_cast<std::uint32_t>(lowest) | plane.flag};
+  if (lowest < 0) return;
+  if (points.size == FacePoints::kMaxSize) {  // a crowd cannot push it out
+    --points.size;
+    add(lowest, lowest_height);
+  }
   ContactPlane contact{plane.p_AQ, plane.a.R_WP.col(ix), plane.a.R_WP.col(iy),
                        plane.s * plane.a.R_WP.col(plane.i)};
   contact.p_WO[plane.i] = plane.s * plane.a.convex->half[plane.i];
   contact.p_WO = plane.a.p_WP + plane.a.R_WP * contact.p_WO;
-  // Four are taken as they are, without the lowest's copy.
-  const int skip = count <= 5 ? 1 : 0;
-  AddFacePoints(points.data() + skip, count - skip, contact,
-                Approach(plane.a, plane.q, contact.nhat_W, contact), manifold);
+  AddFacePoints(points, contact, Approach(plane.a, plane.q, contact.nhat_W, contact), manifold);
 }
 
 }  // namespace

@@ -68,19 +68,20 @@ bool IsCoplanar(const ContactPlane& plane, const ContactPlane& other) {
 
 // Adds all points of a contact, those that it leaves out too, as seen in `plane`; none if there is
 // no room. Returns whether there is.
-bool CollectPoints(const Manifold& manifold, const std::vector<PlanarPoint>& face_points,
-                   const ContactPlane& plane, std::vector<PlanarPoint>* points) {
-  const int count = std::max(manifold.size, manifold.num_face_points);
-  if (static_cast<int>(points->size()) + count > kMaxPlanarPoints) return false;
+bool CollectPoints(const Manifold& manifold, const ContactPlane& plane, FacePoints* points) {
+  const FacePoints* face = manifold.face;
+  if (points->size + (face != nullptr ? face->size : manifold.size) > FacePoints::kMaxSize) {
+    return false;
+  }
   const auto add = [&](const Vector3& p_W, double phi, std::uint64_t key) {
     const Vector3 p = p_W - plane.p_WO;
-    points->push_back({plane.x_W.dot(p), plane.y_W.dot(p), phi, key});
+    points->Add(plane.x_W.dot(p), plane.y_W.dot(p), phi, key);
   };
-  for (int i = 0; i < manifold.num_face_points; ++i) {
-    const PlanarPoint& point = face_points[manifold.first_face_point + i];
-    add(manifold.plane.At(point.x, point.y, point.phi), point.phi, point.key);
+  for (int i = 0; face != nullptr && i < face->size; ++i) {
+    add(manifold.plane.At(face->x[i], face->y[i], face->phi[i]), face->phi[i],
+        manifold.key + face->keys[i]);
   }
-  for (int i = 0; i < manifold.size && manifold.num_face_points == 0; ++i) {
+  for (int i = 0; face == nullptr && i < manifold.size; ++i) {
     const ManifoldPoint& point = manifold.points[i];
     add(point.p_W, point.phi, point.key);
   }
@@ -89,19 +90,20 @@ bool CollectPoints(const Manifold& manifold, const std::vector<PlanarPoint>& fac
 
 // Pieces that overlap or adjoin have corners in common, of which one is enough. Of more than four
 // points the choice sees to that.
-void RemoveCopies(std::vector<PlanarPoint>* points) {
+void RemoveCopies(FacePoints* points) {
   constexpr double kSame = 1e-7;  // [m]
-  if (points->size() > 4) return;
-  const auto end = points->end();
-  auto kept = points->begin();
-  for (auto point = points->begin(); point != end; ++point) {
-    const auto is_same = [&](const PlanarPoint& other) {
-      return std::abs(other.x - point->x) < kSame && std::abs(other.y - point->y) < kSame &&
-             std::abs(other.phi - point->phi) < kSame;
-    };
-    if (std::none_of(points->begin(), kept, is_same)) *kept++ = *point;
+  const int size = points->size;
+  if (size > 4) return;
+  points->size = 0;
+  for (int i = 0; i < size; ++i) {
+    bool is_copy = false;
+    for (int j = 0; j < points->size; ++j) {
+      is_copy = is_copy || (std::abs(points->x[j] - points->x[i]) < kSame &&
+                            std::abs(points->y[j] - points->y[i]) < kSame &&
+                            std::abs(points->phi[j] - points->phi[i]) < kSame);
+    }
+    if (!is_copy) points->Add(points->x[i], points->y[i], points->phi[i], points->keys[i]);
   }
-  points->erase(kept, end);
 }
 
 // How the gap of a contact changes in the step.
@@ -121,23 +123,23 @@ Approach CalcApproach(const Contact& contact, const std::vector<BodyMotion>& mot
 }
 
 // The deepest point at the end of the step, if it is left out, if it sinks in, and if it is deeper
-// than those that are not.
-const PlanarPoint* FindOverlapping(const Manifold& manifold, const Approach& approach,
-                                   const PlanarPoint* points) {
-  const PlanarPoint* deepest = nullptr;
-  double least = -kMaxSinking;
-  for (int i = 0; i < manifold.num_face_points; ++i) {
-    const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
-    if (gap > (deepest == nullptr ? least : least - kDepthTie)) continue;
-    if (gap > points[i].phi - kMaxSinking && gap > -kMaxOverlap) continue;
-    if (manifold.Has(points[i].key)) continue;
-    least = gap;
-    deepest = &points[i];
+// than those that are not; -1 otherwise.
+int FindOverlapping(const Manifold& manifold, const Approach& approach) {
+  const FacePoints& points = *manifold.face;
+  std::array<double, FacePoints::kMaxSize> memory;
+  Eigen::Map<Eigen::ArrayXd> gaps(memory.data(), points.size);
+  gaps = points.phis() + approach.at_origin + approach.per_x * points.xs() +
+         approach.per_y * points.ys();
+  if (gaps.minCoeff() > -kMaxSinking) return -1;
+  const auto is_in = [&](int i) { return manifold.Has(manifold.key + points.keys[i]); };
+  int deepest = -1;
+  for (int i = 0; i < points.size; ++i) {
+    if (gaps[i] > (deepest < 0 ? -kMaxSinking : gaps[deepest] - kDepthTie)) continue;
+    if (gaps[i] > points.phi[i] - kMaxSinking && gaps[i] > -kMaxOverlap) continue;
+    if (!is_in(i)) deepest = i;
   }
-  if (deepest == nullptr) return nullptr;
-  for (int i = 0; i < manifold.num_face_points; ++i) {
-    const double gap = points[i].phi + approach.At(points[i].x, points[i].y);
-    if (gap < least + kMaxSinking && manifold.Has(points[i].key)) return nullptr;
+  for (int i = 0; deepest >= 0 && i < points.size; ++i) {
+    if (gaps[i] < gaps[deepest] + kMaxSinking && is_in(i)) return -1;
   }
   return deepest;
 }
@@ -239,7 +241,7 @@ void CollisionScene::CollidePair(const Pair& pair, double margin, Scratch* scrat
       Contact& contact = contacts->emplace_back();
       contact.manifold.key = MakeKey(pair.a, pair.b, static_cast<int>(i), static_cast<int>(j));
       contact.manifold.loaded = loaded;
-      contact.manifold.face_points = &scratch->face_points;
+      contact.manifold.store = &scratch->faces;
       if (!Collide(pieces_a[i], pieces_b[j], margin, &contact.manifold)) {
         contacts->pop_back();
         continue;
@@ -260,7 +262,7 @@ void CollisionScene::FindContacts(const std::vector<BodyKernel>& kernels,
   PlaceMovables(kernels, motions, dt, scratch);
   std::span<const WorldState::CachedImpulse> cache_left = cache;
   contacts->clear();
-  scratch->face_points.clear();
+  scratch->faces.Clear();
   const auto distance = [&](int movable) {
     return movable < 0 ? 0.0 : scratch->distances[movable];
   };
@@ -284,15 +286,14 @@ void CollisionScene::MergeCoplanar(std::size_t first, Scratch* scratch,
   for (std::size_t i = first; i < contacts->size(); ++i) {
     Contact& contact = (*contacts)[i];
     if (contact.manifold.size == 0) continue;  // taken by one before
-    std::vector<PlanarPoint>& points = scratch->merged_points;
-    points.clear();
+    FacePoints* points = scratch->faces.Next();
     const ContactPlane plane = PlaneOf(contact);
-    CollectPoints(contact.manifold, scratch->face_points, plane, &points);
+    CollectPoints(contact.manifold, plane, points);
     bool merged = false;
     for (std::size_t j = i + 1; j < contacts->size(); ++j) {
       Contact& other = (*contacts)[j];
       if (other.manifold.size == 0 || !IsCoplanar(plane, PlaneOf(other))) continue;
-      if (!CollectPoints(other.manifold, scratch->face_points, plane, &points)) continue;
+      if (!CollectPoints(other.manifold, plane, points)) continue;
       other.manifold.size = 0;
       merged = true;
     }
@@ -300,12 +301,11 @@ void CollisionScene::MergeCoplanar(std::size_t first, Scratch* scratch,
       Manifold& manifold = contact.manifold;
       manifold.Clear();
       manifold.key = 0;  // the points' keys are whole
-      RemoveCopies(&points);
+      RemoveCopies(points);
       // All pieces of a body move as one.
       const PlacedConvex& a = *Placed(bodies_[contact.body_a], *scratch);
       const PlacedConvex& b = *Placed(bodies_[contact.body_b], *scratch);
-      AddFacePoints(points.data(), static_cast<int>(points.size()), plane,
-                    Approach(a, b, manifold.nhat_W, plane), &manifold);
+      AddFacePoints(*points, plane, Approach(a, b, manifold.nhat_W, plane), &manifold);
     }
     if (kept != i) (*contacts)[kept] = contact;
     ++kept;
@@ -314,18 +314,16 @@ void CollisionScene::MergeCoplanar(std::size_t first, Scratch* scratch,
 }
 
 bool CollisionScene::AddOverlapping(const std::vector<BodyMotion>& motions,
-                                    const std::vector<BodyStep>& steps, const Scratch& scratch,
+                                    const std::vector<BodyStep>& steps,
                                     std::vector<Contact>* contacts) {
   bool added = false;
   for (Contact& contact : *contacts) {
     Manifold& manifold = contact.manifold;
-    if (manifold.num_face_points == 0 || manifold.size == Manifold::kMaxPoints) continue;
-    const PlanarPoint* point =
-        FindOverlapping(manifold, CalcApproach(contact, motions, steps),
-                        scratch.face_points.data() + manifold.first_face_point);
-    if (point == nullptr) continue;
-    manifold.points[manifold.size++] = {manifold.plane.At(point->x, point->y, point->phi),
-                                        point->phi, point->key};
+    if (manifold.face == nullptr || manifold.size == Manifold::kMaxPoints) continue;
+    const int i = FindOverlapping(manifold, CalcApproach(contact, motions, steps));
+    if (i < 0) continue;
+    const FacePoints& face = *manifold.face;
+    manifold.Add(manifold.plane.At(face.x[i], face.y[i], face.phi[i]), face.phi[i], face.keys[i]);
     added = true;
   }
   return added;

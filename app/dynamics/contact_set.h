@@ -30,10 +30,9 @@ class CollisionScene {
   /// Memory that FindContacts reuses from step to step.
   struct Scratch {
     std::vector<PlacedConvex> pieces;
-    std::vector<Bounds> bounds;            ///< by movable
-    std::vector<double> distances;         ///< that its points go in a step at most [m], by movable
-    std::vector<PlanarPoint> face_points;  ///< of contacts that leave some out
-    std::vector<PlanarPoint> merged_points;
+    std::vector<Bounds> bounds;     ///< by movable
+    std::vector<double> distances;  ///< that its points go in a step at most [m], by movable
+    FaceStore faces;                ///< of contacts that leave some points out
   };
 
   CollisionScene(const Scene& scene, double margin);
@@ -55,8 +54,7 @@ class CollisionScene {
   /// @param steps  one per movable: how the step takes it once `contacts` have acted.
   /// @returns whether there is one.
   static bool AddOverlapping(const std::vector<BodyMotion>& motions,
-                             const std::vector<BodyStep>& steps, const Scratch& scratch,
-                             std::vector<Contact>* contacts);
+                             const std::vector<BodyStep>& steps, std::vector<Contact>* contacts);
 
  private:
   struct CollisionBody {

@@ -22,65 +22,59 @@ constexpr double kOnLine = 1e-7;
 struct SignedArea {
   double x0, y0, dx, dy;
 
-  SignedArea(const PlanarPoint& from, const PlanarPoint& to)
-      : x0(from.x), y0(from.y), dx(to.x - from.x), dy(to.y - from.y) {}
-  double At(double x, double y) const { return dx * (y - y0) - dy * (x - x0); }
+  SignedArea(const FacePoints& points, int from, int to)
+      : x0(points.x[from]),
+        y0(points.y[from]),
+        dx(points.x[to] - points.x[from]),
+        dy(points.y[to] - points.y[from]) {}
+  double length() const { return std::hypot(dx, dy); }
+  auto Of(const FacePoints& points) const {
+    return dx * (points.ys() - y0) - dy * (points.xs() - x0);
+  }
 };
 
-// The first of the largest values, but for ties, that is above `least`; -1 if none is.
-int FindLargest(const double* values, int count, double least) {
-  int largest = -1;
-  double limit = least;
-  for (int i = 0; i < count; ++i) {
-    if (values[i] <= limit) continue;
-    limit = values[i] * (1.0 + kSizeTie);
-    largest = i;
-  }
-  return largest;
+using Values = Eigen::Map<Eigen::ArrayXd>;
+
+// The first of the largest values, of those that tie with the largest; -1 if none is above `least`.
+int FindLargest(const Values& values, double least) {
+  const double largest = values.maxCoeff();
+  if (largest <= least) return -1;
+  const double limit = largest * (1.0 - kSizeTie);
+  int i = 0;
+  while (values[i] < limit) ++i;
+  return i;
 }
 
 // Those of more than four points that stand for all; see AddFacePoints.
-int ChooseFour(const PlanarPoint* points, int count, const Approach& approach, int* chosen) {
-  // Each choice is a pass of arithmetic over all points, which compilers turn into vector
-  // instructions, and a search through its results.
-  std::array<double, kMaxPlanarPoints> x, y, value;
-  for (int i = 0; i < count; ++i) {
-    x[i] = points[i].x;
-    y[i] = points[i].y;
-    value[i] = points[i].phi;
-  }
-  for (int i = 0; i < count; ++i) value[i] += approach.At(x[i], y[i]);
+int ChooseFour(const FacePoints& points, const Approach& approach, int* chosen) {
+  std::array<double, FacePoints::kMaxSize> memory;
+  Values values(memory.data(), points.size);
+  values = points.phis() + approach.at_origin + approach.per_x * points.xs() +
+           approach.per_y * points.ys();
+  const double deepest = values.minCoeff();
   int first = 0;
-  for (int i = 1; i < count; ++i) {
-    if (value[i] < value[first] - kDepthTie) first = i;
-  }
-  const PlanarPoint& p0 = points[first];
-  for (int i = 0; i < count; ++i) {
-    value[i] = (x[i] - p0.x) * (x[i] - p0.x) + (y[i] - p0.y) * (y[i] - p0.y);
-  }
-  const int second = FindLargest(value.data(), count, kOnLine * kOnLine);
+  while (values[first] > deepest + kDepthTie) ++first;
   chosen[0] = first;
+
+  values = (points.xs() - points.x[first]).square() + (points.ys() - points.y[first]).square();
+  const int second = FindLargest(values, kOnLine * kOnLine);
   if (second < 0) return 1;
   chosen[1] = second;
-  const PlanarPoint& p1 = points[second];
 
-  const SignedArea base(p0, p1);
-  for (int i = 0; i < count; ++i) value[i] = std::abs(base.At(x[i], y[i]));
-  const double min_area = kOnLine * std::hypot(base.dx, base.dy);
-  const int third = FindLargest(value.data(), count, min_area);
+  const SignedArea base(points, first, second);
+  const double min_area = kOnLine * base.length();
+  values = base.Of(points).abs();
+  const int third = FindLargest(values, min_area);
   if (third < 0) return 2;
   chosen[2] = third;
-  const PlanarPoint& p2 = points[third];
 
-  const double sign = base.At(p2.x, p2.y) > 0.0 ? 1.0 : -1.0;
-  const SignedArea side_1(p1, p2), side_2(p2, p0);
-  for (int i = 0; i < count; ++i) {
-    const double outside_0 = -sign * base.At(x[i], y[i]);
-    const double outside_1 = -sign * side_1.At(x[i], y[i]);
-    const double outside_2 = -sign * side_2.At(x[i], y[i]);
-    value[i] = std::max(outside_0, std::max(outside_1, outside_2));
-  }
-  const int fourth = FindLargest(value.data(), count, min_area);
+  // Farthest outside any side of the triangle, whose corners may go round either way.
+  const double x_third = points.x[third] - base.x0, y_third = points.y[third] - base.y0;
+  const double outside = base.dx * y_third - base.dy * x_third > 0.0 ? -1.0 : 1.0;
+  const SignedArea side_1(points, second, third), side_2(points, third, first);
+  values =
+      (outside * base.Of(points)).max(outside * side_1.Of(points)).max(outside * side_2.Of(points));
+  const int fourth = FindLargest(values, min_area);
   if (fourth < 0) return 3;
   chosen[3] = fourth;
   return 4;
@@ -90,36 +84,43 @@ int ChooseFour(const PlanarPoint* points, int count, const Approach& approach, i
 struct GapPlane {
   double x0, y0, phi0, per_x, per_y;
 
-  GapPlane(const PlanarPoint& p0, const PlanarPoint& p1, const PlanarPoint& p2)
-      : x0(p0.x), y0(p0.y), phi0(p0.phi) {
-    const double dx_1 = p1.x - x0, dy_1 = p1.y - y0, dx_2 = p2.x - x0, dy_2 = p2.y - y0;
-    const double d_1 = p1.phi - phi0, d_2 = p2.phi - phi0;
+  GapPlane(const FacePoints& points, int i0, int i1, int i2)
+      : x0(points.x[i0]), y0(points.y[i0]), phi0(points.phi[i0]) {
+    const double dx_1 = points.x[i1] - x0, dy_1 = points.y[i1] - y0;
+    const double dx_2 = points.x[i2] - x0, dy_2 = points.y[i2] - y0;
+    const double d_1 = points.phi[i1] - phi0, d_2 = points.phi[i2] - phi0;
     const double inv_area = 1.0 / (dx_1 * dy_2 - dx_2 * dy_1);
     per_x = (d_1 * dy_2 - d_2 * dy_1) * inv_area;
     per_y = (dx_1 * d_2 - dx_2 * d_1) * inv_area;
   }
-  bool Holds(const PlanarPoint& p) const {
-    return std::abs(p.phi - phi0 - per_x * (p.x - x0) - per_y * (p.y - y0)) < kInPlane;
+  bool Holds(const FacePoints& points, int i) const {
+    return std::abs(points.phi[i] - phi0 - per_x * (points.x[i] - x0) -
+                    per_y * (points.y[i] - y0)) < kInPlane;
+  }
+  bool HoldsAll(const FacePoints& points) const {
+    return (points.phis() - phi0 - per_x * (points.xs() - x0) - per_y * (points.ys() - y0))
+               .abs()
+               .maxCoeff() < kInPlane;
   }
 };
 
 // Chooses among more than four points; see AddFacePoints. Returns how many; their indices are in
 // `chosen`.
-int ChoosePoints(const PlanarPoint* points, int count, const Approach& approach, Manifold* manifold,
+int ChoosePoints(const FacePoints& points, const Approach& approach, Manifold* manifold,
                  std::array<int, Manifold::kMaxPoints>* chosen) {
-  int size = ChooseFour(points, count, approach, chosen->data());
+  int size = ChooseFour(points, approach, chosen->data());
   if (size < 3) return size;
-  const GapPlane plane(points[(*chosen)[0]], points[(*chosen)[1]], points[(*chosen)[2]]);
-  manifold->crowded = !std::all_of(points, points + count,
-                                   [&plane](const PlanarPoint& p) { return plane.Holds(p); });
+  const GapPlane plane(points, (*chosen)[0], (*chosen)[1], (*chosen)[2]);
+  manifold->crowded = !plane.HoldsAll(points);
   if (!manifold->crowded) return size;
   for (const WorldState::CachedImpulse& loaded : manifold->loaded) {
     if (size == Manifold::kMaxPoints) break;
-    const auto is_it = [&](int i) { return manifold->key + points[i].key == loaded.key; };
-    if (std::any_of(chosen->data(), chosen->data() + size, is_it)) continue;
+    const std::uint64_t key = loaded.key - manifold->key;
+    const auto has_key = [&](int i) { return points.keys[i] == key; };
+    if (std::any_of(chosen->data(), chosen->data() + size, has_key)) continue;
     int i = 0;
-    while (i < count && !is_it(i)) ++i;
-    if (i < count && !plane.Holds(points[i])) (*chosen)[size++] = i;
+    while (i < points.size && !has_key(i)) ++i;
+    if (i < points.size && !plane.Holds(points, i)) (*chosen)[size++] = i;
   }
   return size;
 }
@@ -138,26 +139,22 @@ Approach::Approach(const Vector3& shift_W, const Vector3& turn_W, const Vector3&
       per_x(nhat_W.dot(turn_W.cross(plane.x_W))),
       per_y(nhat_W.dot(turn_W.cross(plane.y_W))) {}
 
-void AddFacePoints(const PlanarPoint* points, int count, const ContactPlane& plane,
-                   const Approach& approach, Manifold* manifold) {
-  const auto add = [&](const PlanarPoint& point) {
-    manifold->Add(plane.At(point.x, point.y, point.phi), point.phi, point.key);
+void AddFacePoints(const FacePoints& points, const ContactPlane& plane, const Approach& approach,
+                   Manifold* manifold) {
+  const auto add = [&](int i) {
+    manifold->Add(plane.At(points.x[i], points.y[i], points.phi[i]), points.phi[i], points.keys[i]);
   };
-  if (count <= kNumCorners) {
-    std::for_each(points, points + count, add);
+  if (points.size <= kNumCorners) {
+    for (int i = 0; i < points.size; ++i) add(i);
     return;
   }
   std::array<int, Manifold::kMaxPoints> chosen;
-  const int num_chosen = ChoosePoints(points, count, approach, manifold, &chosen);
-  for (int k = 0; k < num_chosen; ++k) add(points[chosen[k]]);
-  if (num_chosen == count || manifold->face_points == nullptr) return;
+  const int num_chosen = ChoosePoints(points, approach, manifold, &chosen);
+  for (int k = 0; k < num_chosen; ++k) add(chosen[k]);
+  if (num_chosen == points.size || manifold->store == nullptr) return;
   manifold->plane = plane;
-  manifold->first_face_point = static_cast<int>(manifold->face_points->size());
-  manifold->num_face_points = count;
-  for (int i = 0; i < count; ++i) {
-    const PlanarPoint& point = points[i];
-    manifold->face_points->push_back({point.x, point.y, point.phi, manifold->key + point.key});
-  }
+  manifold->face = &points;
+  manifold->store->Keep();
 }
 
 }  // namespace pregrasp

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -32,15 +33,48 @@ struct ContactPlane {
   }
 };
 
-/// A point of a face that may still be left out: its place in the contact's plane.
-struct PlanarPoint {
-  double x, y;  ///< [m]
-  double phi;
-  std::uint64_t key;
+/// The points of a face, of which some may be left out: their places in the contact's plane.
+/// Numbers of a kind lie side by side, for loops over all of them.
+struct FacePoints {
+  static constexpr int kMaxSize = 256;
+
+  int size = 0;
+  std::array<double, kMaxSize> x, y, phi;    ///< [m]
+  std::array<std::uint64_t, kMaxSize> keys;  ///< as of a ManifoldPoint, less the manifold's own
+
+  FacePoints() {}  // the arrays are filled by Add
+
+  void Add(double x_in, double y_in, double phi_in, std::uint64_t key) {
+    x[size] = x_in;
+    y[size] = y_in;
+    phi[size] = phi_in;
+    keys[size++] = key;
+  }
+
+  using Numbers = Eigen::Map<const Eigen::ArrayXd>;
+  Numbers xs() const { return {x.data(), size}; }
+  Numbers ys() const { return {y.data(), size}; }
+  Numbers phis() const { return {phi.data(), size}; }
 };
 
-/// The most points of a face.
-inline constexpr int kMaxPlanarPoints = 256;
+/// Memory for the faces of a step.
+class FaceStore {
+ public:
+  bool empty() const { return num_kept_ == 0; }
+  void Clear() { num_kept_ = 0; }
+
+  /// An empty face; the next one is the same, unless this is kept.
+  FacePoints* Next() {
+    if (num_kept_ == faces_.size()) faces_.push_back(std::make_unique<FacePoints>());
+    faces_[num_kept_]->size = 0;
+    return faces_[num_kept_].get();
+  }
+  void Keep() { ++num_kept_; }
+
+ private:
+  std::vector<std::unique_ptr<FacePoints>> faces_;
+  std::size_t num_kept_ = 0;
+};
 
 /// Contact between two convex shapes A and B: one normal, four points that stand for all, and those
 /// others that bore load in the last step or without which the shapes would overlap after this one.
@@ -55,13 +89,13 @@ struct Manifold {
   std::span<const WorldState::CachedImpulse> loaded;
   bool crowded = false;  ///< some of the face's points are not in the plane of the four
 
-  /// All points of the face, if some of them are left out and there is a place for them.
-  std::vector<PlanarPoint>* face_points = nullptr;
-  int first_face_point = 0, num_face_points = 0;
-  ContactPlane plane;
+  FaceStore* store = nullptr;        ///< where faces are kept, if anywhere
+  const FacePoints* face = nullptr;  ///< all points of the face, if some of them are left out
+  ContactPlane plane;                ///< of the face
 
   void Clear() {
-    size = num_face_points = 0;
+    size = 0;
+    face = nullptr;
     crowded = false;
   }
   void Add(const Vector3& p_W, double phi, std::uint64_t feature) {
@@ -88,14 +122,14 @@ struct Approach {
   double At(double x, double y) const { return at_origin + per_x * x + per_y * y; }
 };
 
-/// Adds those of a face's points (kMaxPlanarPoints at most, named by their features) that are
-/// chosen. Four at most stand for all: the deepest at the end of the step, the farthest from it,
-/// the one that makes the largest triangle, and the one farthest outside that triangle. Ties within
-/// a tolerance go to the lower index, so that the choice does not flicker. Those that bore load in
-/// the last step are kept too where they are not in the plane of the four, as room allows: of a
-/// crowd of points almost in a plane the body rests on three, and they must stay while the four
-/// change. All points are kept in `face_points` if some of them are left out.
-void AddFacePoints(const PlanarPoint* points, int count, const ContactPlane& plane,
-                   const Approach& approach, Manifold* manifold);
+/// Adds those of a face's points that are chosen. Four at most stand for all: the deepest at the
+/// end of the step, the farthest from it, the one that makes the largest triangle, and the one
+/// farthest outside that triangle. Ties within a tolerance go to the lower index, so that the
+/// choice does not flicker. Those that bore load in the last step are kept too where they are not
+/// in the plane of the four, as room allows: of a crowd of points almost in a plane the body rests
+/// on three, and they must stay while the four change. If some points are left out, `points`, which
+/// is the store's next face then, is kept.
+void AddFacePoints(const FacePoints& points, const ContactPlane& plane, const Approach& approach,
+                   Manifold* manifold);
 
 }  // namespace pregrasp

@@ -21,7 +21,7 @@ constexpr double kAlmostFlat = 0.05;
 // Lines within this angle [rad] lie along each other.
 constexpr double kParallel = 2e-3;
 
-constexpr int kMaxCandidates = kMaxPlanarPoints;
+constexpr int kMaxCandidates = FacePoints::kMaxSize;
 
 // A feature seen along the contact normal: x and y in the tangent plane, heights along the normal.
 struct Outline {
@@ -375,18 +375,18 @@ class Overlap {
       }
       return manifold->size > 0 ? OverlapResult::kTouching : OverlapResult::kNone;
     }
-    std::array<PlanarPoint, kMaxCandidates> points;
-    int near = 0;
+    FacePoints own;
+    FacePoints& points = manifold->store != nullptr ? *manifold->store->Next() : own;
     for (int i = 0; i < count_; ++i) {
       const Candidate& c = candidates_[i];
       const double phi = c.height_b - c.height_a;
-      if (phi <= margin) points[near++] = {c.x, c.y, phi, c.id};
+      if (phi <= margin) points.Add(c.x, c.y, phi, c.id);
     }
-    if (near == 0) return OverlapResult::kNone;
+    if (points.size == 0) return OverlapResult::kNone;
     ContactPlane on_a = plane_;
     on_a.x_W += a_.gradient.x() * plane_.nhat_W;
     on_a.y_W += a_.gradient.y() * plane_.nhat_W;
-    AddFacePoints(points.data(), near, on_a, approach_, manifold);
+    AddFacePoints(points, on_a, approach_, manifold);
     return OverlapResult::kTouching;
   }
 

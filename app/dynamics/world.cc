@@ -169,7 +169,7 @@ struct World::Impl {
 
   // Adds the points that the velocities found so far make overlap. Returns whether there are any.
   bool AddOverlapping(StepScratch* scratch) const {
-    if (scratch->collision.face_points.empty()) return false;
+    if (scratch->collision.faces.empty()) return false;
     scratch->steps.resize(kernels.size());
     for (int i = 0; i < static_cast<int>(kernels.size()); ++i) {
       const BodyVelocity &y = scratch->solver.velocity(i), &z = scratch->solver.correction(i);
@@ -177,8 +177,7 @@ struct World::Impl {
       scratch->steps[i].turn_W = scratch->motions[i].R_WP *
                                  kernels[i].inv_sqrt_I_P.cwiseProduct(config.dt * (y.w_P + z.w_P));
     }
-    return CollisionScene::AddOverlapping(scratch->motions, scratch->steps, scratch->collision,
-                                          &scratch->contacts);
+    return CollisionScene::AddOverlapping(scratch->motions, scratch->steps, &scratch->contacts);
   }
 
   // Everything but the bodies, once they have moved.
