@@ -126,11 +126,12 @@ class StopRule {
 
   /// @param change  largest change of an impulse over the mass in a sweep [m/s].
   bool IsMet(double change) {
+    if (!is_slow_) return change < tolerance_;
     // From one sweep to the next but one, as those to and fro differ.
     const double rate =
         before_last_ > 0.0 ? std::min(kSlowest, std::sqrt(change / before_last_)) : kSlowest;
     before_last_ = std::exchange(last_, change);
-    return change < tolerance_ && (!is_slow_ || change * rate < tolerance_ * (1.0 - rate));
+    return change < tolerance_ && change * rate < tolerance_ * (1.0 - rate);
   }
 
  private:
