@@ -134,7 +134,9 @@ class AxisSearch {
     axis->kind = ConvexKind::kCapsule;
     axis->radius = placed.convex->radius;
     axis->half_height = placed.convex->half_height;
-    return {axis, placed.R_WP, placed.p_WP, placed.shift_W, placed.turn_W};
+    PlacedConvex placed_axis = placed;
+    placed_axis.convex = axis;
+    return placed_axis;
   }
 
   // Edges against edges and rims: climbs from the best direction so far.

@@ -26,7 +26,7 @@ struct FacePlane {
     if (phi > margin) return;
     Vector3 p_AC = p_A;
     p_AC[i] -= 0.5 * s * phi;
-    manifold->Add(a.p_WP + a.R_WP * p_AC, phi, feature | flag);
+    manifold->Add(a.p_WP + a.ToWorld(p_AC), phi, feature | flag);
   }
 };
 
@@ -63,7 +63,7 @@ void AddCylinderPoints(const FacePlane& plane, Manifold* manifold) {
     plane.Add(plane.p_AQ + q.half_height * axis + radial, 9, manifold);
     return;
   }
-  const Vector3 turn = plane.a.R_WP.transpose() * (plane.q.turn_W - plane.a.turn_W);
+  const Vector3 turn = plane.a.FromWorld(Vector3(plane.q.turn_W - plane.a.turn_W));
   const Vector3 nhat_next = nhat - turn.cross(nhat);  // as the turning cylinder sees it
   const auto down = [&plane](const Vector3& n) {
     return Vector2(-n.dot(plane.R_AQ.col(0)), -n.dot(plane.R_AQ.col(1)));
@@ -131,7 +131,7 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   ContactPlane contact{plane.p_AQ, plane.a.R_WP.col(ix), plane.a.R_WP.col(iy),
                        plane.s * plane.a.R_WP.col(plane.i)};
   contact.p_WO[plane.i] = plane.s * plane.a.convex->half[plane.i];
-  contact.p_WO = plane.a.p_WP + plane.a.R_WP * contact.p_WO;
+  contact.p_WO = plane.a.p_WP + plane.a.ToWorld(contact.p_WO);
   AddFacePoints(points, contact, Approach(plane.a, plane.q, contact.nhat_W, contact), manifold);
 }
 
@@ -139,7 +139,7 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
 
 FaceOutcome CollideWithBoxFace(const PlacedConvex& a, const PlacedConvex& q, double margin,
                                std::uint32_t flag, Manifold* manifold) {
-  FacePlane plane{a, q, a.R_WP.transpose() * q.R_WP, a.R_WP.transpose() * (q.p_WP - a.p_WP)};
+  FacePlane plane{a, q, a.FromWorld(q.R_WP), a.FromWorld(Vector3(q.p_WP - a.p_WP))};
   plane.margin = margin;
   plane.flag = flag;
   const Vector3& half = a.convex->half;

@@ -175,7 +175,9 @@ CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(marg
     } else {
       collision.first_placed = static_cast<int>(placed_.size());
       for (const Convex& piece : collision.pieces) {
-        Place(piece, body.X_WB.linear(), body.X_WB.translation(), &placed_.emplace_back());
+        PlacedConvex& placed = placed_.emplace_back();
+        Place(piece, body.X_WB.linear(), body.X_WB.translation(), &placed);
+        placed.is_upright = placed.R_WP == Matrix3::Identity();
       }
     }
   }

@@ -69,9 +69,18 @@ struct PlacedConvex {
   const Convex* convex = nullptr;
   Matrix3 R_WP = Matrix3::Identity();
   Vector3 p_WP = Vector3::Zero();
+  bool is_upright = false;  ///< R_WP is known to be the identity, as most tables' and walls' is
   Bounds bounds;
   Vector3 shift_W = Vector3::Zero();  ///< of its origin [m]
   Vector3 turn_W = Vector3::Zero();   ///< [rad], small
+
+  Vector3 ToWorld(const Vector3& v) const { return is_upright ? v : Vector3(R_WP * v); }
+  Vector3 FromWorld(const Vector3& v_W) const {
+    return is_upright ? v_W : Vector3(R_WP.transpose() * v_W);
+  }
+  Matrix3 FromWorld(const Matrix3& R_WA) const {
+    return is_upright ? R_WA : Matrix3(R_WP.transpose() * R_WA);
+  }
 };
 
 }  // namespace pregrasp
