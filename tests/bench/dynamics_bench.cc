@@ -1,5 +1,5 @@
 // Rollout/SCENE/ENGINE: two simulated seconds of contact, beside the engines that people know.
-// Batch/SCENE/threads:N: 64 such rollouts on N threads.
+// Batch/SCENE/threads:N: 256 such rollouts on N threads.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 

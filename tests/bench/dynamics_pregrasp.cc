@@ -27,7 +27,7 @@ EngineRun RunPregrasp(const DynamicsCase& c) {
 }
 
 BatchRun RunPregraspBatch(const DynamicsCase& c, int threads) {
-  constexpr int kNumRollouts = 64, kNumKnots = 20;
+  constexpr int kNumRollouts = 256, kNumKnots = 20;
   const World world(c.scene);
   ThreadPool pool(threads);
   RolloutConfig config;
