@@ -25,7 +25,6 @@ namespace pregrasp {
 namespace {
 
 constexpr int kTrials = 4;        // cuts that are tried out, the best by pairs
-constexpr int kSwaps = 16;        // of one cut for another, after merging
 constexpr double kOvercut = 1.6;  // pieces before merging, in multiples of those wanted
 
 class Decomposer {
@@ -33,7 +32,7 @@ class Decomposer {
   Decomposer(const TriangleMesh& mesh, const DecomposeConfig& config)
       : mesh_(mesh),
         config_(config),
-        limit_(config.concavity),
+        limit_(config.free_concavity),
         most_(static_cast<int>(kOvercut * config.max_pieces)),
         maker_(mesh, config),
         cuts_(mesh, maker_.roughly(), maker_.size()) {}
@@ -41,10 +40,12 @@ class Decomposer {
   std::vector<TriangleMesh> Run() {
     Piece whole = maker_.MakeWhole();
     if (whole.protrusion > config_.concavity) {
-      if (const auto revolution = FindRevolution(mesh_)) {
+      // Sectors of a mesh whose corners are not aligned, as of a scan, have no edges to follow.
+      const auto revolution = FindRevolution(mesh_);
+      if (revolution && revolution->sides > 0) {
         Sectors sectors = CutIntoSectors(maker_, *revolution, config_.concavity, most_);
         pieces_ = std::move(sectors.pieces);
-        limit_ = std::max(limit_, sectors.protrusion);
+        if (!pieces_.empty()) limit_ = std::max(config_.concavity, sectors.protrusion);
       }
       cuts_.FindReflexPlanes();
     }
@@ -52,7 +53,6 @@ class Decomposer {
     while (static_cast<int>(pieces_.size()) < most_ && CutWorst()) {
     }
     MergePieces(maker_, limit_, config_.max_pieces, pieces_);
-    Improve();
     std::vector<TriangleMesh> hulls;
     hulls.reserve(pieces_.size());
     for (Piece& piece : pieces_) {
@@ -74,7 +74,7 @@ class Decomposer {
     halves.worst = 0.0;
     for (const Plane& side : {plane, plane.Turned()}) {
       Piece half = maker_.CutBelow(piece, side);
-      if (half.parts.empty() || !maker_.Close(half)) continue;
+      if (half.parts.empty() || !maker_.CloseRoughly(half)) continue;
       maker_.Measure(half);
       halves.worst = std::max(halves.worst, half.protrusion);
       halves.sum += half.volume;
@@ -101,6 +101,10 @@ class Decomposer {
         best = std::move(halves);
       }
       if (tried.size() == kTrials) break;
+    }
+    for (Piece& half : best.pieces) {
+      maker_.Close(half);
+      maker_.Measure(half);
     }
     return best;
   }
@@ -130,28 +134,6 @@ class Decomposer {
     return true;
   }
 
-  // Cuts the worst piece and joins two others in exchange, while that makes the worst less bad.
-  void Improve() {
-    for (int round = 0; round < kSwaps; ++round) {
-      const int worst = FindWorst();
-      if (worst < 0) return;
-      const double before = pieces_[worst].protrusion;
-      Halves halves = FindHalves(pieces_[worst]);
-      if (halves.pieces.empty() || halves.worst >= before) {
-        pieces_[worst].whole = true;
-        continue;
-      }
-      if (static_cast<int>(pieces_.size()) >= config_.max_pieces &&
-          !JoinBestPair(maker_, before, worst, pieces_)) {
-        return;
-      }
-      // Joining has moved the worst piece to the front or left it in place.
-      const int now = FindWorst();
-      pieces_.erase(pieces_.begin() + now);
-      for (Piece& half : halves.pieces) pieces_.push_back(std::move(half));
-    }
-  }
-
   const TriangleMesh& mesh_;
   const DecomposeConfig& config_;
   double limit_;  // how far pieces may reach outside [m]
@@ -166,10 +148,11 @@ std::string HashOf(const TriangleMesh& mesh, const DecomposeConfig& config) {
   const auto add = [&bytes](const auto* data, std::size_t count) {
     bytes.append(reinterpret_cast<const char*>(data), count * sizeof(*data));
   };
-  const std::array<double, 6> head{static_cast<double>(mesh.V.rows()),
+  const std::array<double, 7> head{static_cast<double>(mesh.V.rows()),
                                    static_cast<double>(mesh.F.rows()),
                                    static_cast<double>(config.max_pieces),
                                    config.concavity,
+                                   config.free_concavity,
                                    config.tolerance,
                                    static_cast<double>(config.max_vertices)};
   add(head.data(), head.size());
@@ -238,6 +221,7 @@ void DecomposeConfig::Validate() const {
   };
   require(max_pieces >= 1 && max_pieces <= 256, "max_pieces", "1 to 256", max_pieces);
   require(concavity > 0.0, "concavity", "a length above 0 m", concavity);
+  require(free_concavity >= concavity, "free_concavity", "at least concavity", free_concavity);
   require(tolerance > 0.0, "tolerance", "a length above 0 m", tolerance);
   require(max_vertices >= 8 && max_vertices <= 4096, "max_vertices", "8 to 4096", max_vertices);
 }

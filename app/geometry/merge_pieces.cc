@@ -1,18 +1,19 @@
 #include "app/geometry/merge_pieces.h"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 namespace pregrasp {
 namespace {
 
-// Two pieces that may become one. The protrusion of their joint hull is worked out when `exact`;
-// before that it is a lower bound.
+// Two pieces that may become one.
 struct Joint {
-  double protrusion = 0.0;
-  bool exact = false;
   std::size_t i = 0, j = 0;
+  double protrusion = 0.0;     // a lower bound, until there is a piece [m]
+  std::optional<Piece> piece;  // without its parts
 
   bool operator<(const Joint& other) const {
     return std::tie(protrusion, i, j) < std::tie(other.protrusion, other.i, other.j);
@@ -24,39 +25,32 @@ class Joiner {
   Joiner(const PieceMaker& maker, double limit, std::vector<Piece>& pieces)
       : maker_(maker), limit_(limit), pieces_(pieces), gone_(pieces.size(), false) {}
 
-  void AddAllJoints(int except) {
-    if (except >= 0) gone_[except] = true;
-    for (std::size_t i = pieces_.size(); i-- > 0;) {
-      if (gone_[i]) continue;
-      gone_[i] = true;  // each pair once
-      AddJoints(i);
-    }
-    gone_.assign(pieces_.size(), false);
+  void AddAllJoints() {
+    for (std::size_t i = 1; i < pieces_.size(); ++i) AddJoints(i);
   }
 
-  // The joint that reaches least outside, worked out; none left when false.
-  bool FindBest(Joint& best, Piece& piece) {
+  // The joint that reaches least outside, with its piece; null when none is left.
+  const Joint* FindBest() {
     while (!joints_.empty()) {
-      const auto it = std::min_element(joints_.begin(), joints_.end());
+      const auto best = std::min_element(joints_.begin(), joints_.end());
+      if (best->piece) return &*best;
       Piece joined;
-      if (!maker_.Join({&pieces_[it->i], &pieces_[it->j]}, joined)) {
-        joints_.erase(it);
-        continue;
-      }
-      const bool was_exact = it->exact;
-      it->exact = true;
-      it->protrusion = joined.protrusion;
-      if (was_exact || it == std::min_element(joints_.begin(), joints_.end())) {
-        best = *it;
-        piece = std::move(joined);
-        return true;
+      if (maker_.Join({&pieces_[best->i], &pieces_[best->j]}, joined)) {
+        best->protrusion = joined.protrusion;
+        best->piece = std::move(joined);
+      } else {
+        joints_.erase(best);
       }
     }
-    return false;
+    return nullptr;
   }
 
-  void Replace(const Joint& joint, Piece joined) {
-    gone_[joint.i] = gone_[joint.j] = true;
+  void CarryOut(const Joint& joint) {
+    Piece joined = *joint.piece;
+    for (const std::size_t k : {joint.i, joint.j}) {
+      std::move(pieces_[k].parts.begin(), pieces_[k].parts.end(), std::back_inserter(joined.parts));
+      gone_[k] = true;
+    }
     joints_.erase(std::remove_if(joints_.begin(), joints_.end(),
                                  [&](const Joint& j) { return gone_[j.i] || gone_[j.j]; }),
                   joints_.end());
@@ -77,7 +71,7 @@ class Joiner {
   // How far lines between corners of the two hulls leave the solid: some of the joint hull.
   double BoundJoint(const Piece& a, const Piece& b) const {
     double farthest = 0.0;
-    constexpr int kLines = 24;
+    constexpr int kLines = 96;
     for (int k = 0; k < kLines; ++k) {
       const Vector3 p = a.hull.V.row((k * 7) % a.hull.V.rows());
       const Vector3 q = b.hull.V.row((k * 5) % b.hull.V.rows());
@@ -90,9 +84,9 @@ class Joiner {
     AlignedBox reach = pieces_[i].bounds;
     reach.min().array() -= limit_;
     reach.max().array() += limit_;
-    for (std::size_t j = 0; j < pieces_.size(); ++j) {
-      if (j == i || gone_[j] || reach.intersection(pieces_[j].bounds).isEmpty()) continue;
-      joints_.push_back({BoundJoint(pieces_[i], pieces_[j]), false, i, j});
+    for (std::size_t j = 0; j < i; ++j) {
+      if (gone_[j] || reach.intersection(pieces_[j].bounds).isEmpty()) continue;
+      joints_.push_back({i, j, BoundJoint(pieces_[i], pieces_[j]), {}});
     }
   }
 
@@ -108,28 +102,14 @@ class Joiner {
 void MergePieces(const PieceMaker& maker, double limit, int max_pieces,
                  std::vector<Piece>& pieces) {
   Joiner joiner(maker, limit, pieces);
-  joiner.AddAllJoints(-1);
+  joiner.AddAllJoints();
   auto count = static_cast<int>(pieces.size());
-  Joint best;
-  Piece joined;
-  while (joiner.FindBest(best, joined)) {
-    if (count <= max_pieces && joined.protrusion > limit) break;
-    joiner.Replace(best, std::move(joined));
-    joined = {};
+  while (const Joint* best = joiner.FindBest()) {
+    if (count <= max_pieces && best->protrusion > limit) break;
+    joiner.CarryOut(*best);
     --count;
   }
   joiner.DropGone();
-}
-
-bool JoinBestPair(const PieceMaker& maker, double limit, int except, std::vector<Piece>& pieces) {
-  Joiner joiner(maker, limit, pieces);
-  joiner.AddAllJoints(except);
-  Joint best;
-  Piece joined;
-  if (!joiner.FindBest(best, joined) || joined.protrusion >= limit) return false;
-  joiner.Replace(best, std::move(joined));
-  joiner.DropGone();
-  return true;
 }
 
 }  // namespace pregrasp

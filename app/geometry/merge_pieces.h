@@ -10,8 +10,4 @@ namespace pregrasp {
 /// it reaches no farther than `limit` [m] or there are more than `max_pieces`.
 void MergePieces(const PieceMaker& maker, double limit, int max_pieces, std::vector<Piece>& pieces);
 
-/// Joins the two pieces, neither of them number `except`, that reach least outside together, if
-/// that is less than `limit` [m]: the joint piece comes last. False when there are none.
-bool JoinBestPair(const PieceMaker& maker, double limit, int except, std::vector<Piece>& pieces);
-
 }  // namespace pregrasp

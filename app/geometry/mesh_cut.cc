@@ -59,10 +59,13 @@ SolidPart CutBelow(const SolidPart& part, const Plane& plane, double snap) {
   return below;
 }
 
-void AppendHullPoints(const SolidPart& part, const MeshDistance& distance,
+void AppendHullPoints(const SolidPart& part, const MeshDistance& distance, std::size_t stride,
                       std::vector<Vector3>& points) {
-  for (const Triangle& t : part.surface) points.insert(points.end(), t.begin(), t.end());
-  const double slack = 1e-9 * distance.bounds().sizes().norm();
+  for (std::size_t f = 0; f < part.surface.size(); f += stride) {
+    points.insert(points.end(), part.surface[f].begin(), part.surface[f].end());
+  }
+  const double size = distance.bounds().sizes().norm();
+  const double slack = 1e-9 * size, on_surface = 1e-6 * size;
   const std::vector<Plane>& cell = part.cell;
   for (std::size_t i = 0; i < cell.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -74,7 +77,8 @@ void AppendHullPoints(const SolidPart& part, const MeshDistance& distance,
         if (!distance.bounds().contains(p)) continue;
         const bool in_cell = std::all_of(
             cell.begin(), cell.end(), [&](const Plane& plane) { return plane.Height(p) <= slack; });
-        if (in_cell && distance.Calc(p) <= 0.0) points.push_back(p);
+        // On the surface it is the part's only if triangles of the part say so.
+        if (in_cell && distance.Calc(p) < -on_surface) points.push_back(p);
       }
     }
   }

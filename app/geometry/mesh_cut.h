@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "app/geometry/mesh_distance.h"
@@ -32,8 +33,9 @@ SolidPart MakeSolidPart(const TriangleMesh& mesh);
 /// to the side on which its solid is.
 SolidPart CutBelow(const SolidPart& part, const Plane& plane, double snap);
 
-/// Adds the points that span the part's hull, and more. `distance` is the whole solid's.
-void AppendHullPoints(const SolidPart& part, const MeshDistance& distance,
+/// Adds the points that span the part's hull, and more, of each `stride`-th triangle. `distance` is
+/// the whole solid's.
+void AppendHullPoints(const SolidPart& part, const MeshDistance& distance, std::size_t stride,
                       std::vector<Vector3>& points);
 
 }  // namespace pregrasp

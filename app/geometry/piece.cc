@@ -1,6 +1,7 @@
 #include "app/geometry/piece.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "app/core/error.h"
 #include "app/core/rng.h"
@@ -15,11 +16,16 @@ namespace {
 constexpr double kSampleSpacing = 4.0;
 constexpr int kFewestSamples = 160, kMostSamples = 1500;
 
-// Corners this near to a cut, in shares of the solid's diagonal, count as on it, so that cuts
-// through the corners of a polygon make no slivers.
+// Share of the solid's diagonal, so that cuts through the corners of a polygon make no slivers.
 constexpr double kSnap = 1e-6;
 
-constexpr double kWorkingShare = 0.2;  // of the hulls' tolerance, until they are finished
+// Shares of the hulls' tolerance: until they are finished, and to compare cuts by.
+constexpr double kWorkingShare = 0.5;
+constexpr double kRoughShare = 4.0;
+
+// At most so many triangles span a hull.
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kFew = 1000;
 
 }  // namespace
 
@@ -29,6 +35,8 @@ PieceMaker::PieceMaker(const TriangleMesh& mesh, const DecomposeConfig& config)
       distance_(mesh),
       roughly_(distance_),
       size_(distance_.bounds().sizes().norm()) {}
+
+double PieceMaker::snap() const { return kSnap * size_; }
 
 Piece PieceMaker::MakeWhole() const {
   Piece whole;
@@ -41,26 +49,33 @@ Piece PieceMaker::MakeWhole() const {
 Piece PieceMaker::CutBelow(const Piece& piece, const Plane& plane) const {
   Piece below;
   for (const SolidPart& part : piece.parts) {
-    below.parts.push_back(pregrasp::CutBelow(part, plane, kSnap * size_));
+    below.parts.push_back(pregrasp::CutBelow(part, plane, snap()));
     if (below.parts.back().surface.empty()) below.parts.pop_back();
   }
   return below;
 }
 
-MatrixX3 PieceMaker::GatherPoints(const Piece& piece) const {
+MatrixX3 PieceMaker::GatherPoints(const Piece& piece, std::size_t most) const {
+  std::size_t triangles = 0;
+  for (const SolidPart& part : piece.parts) triangles += part.surface.size();
+  const std::size_t stride = 1 + triangles / most;
   std::vector<Vector3> points;
-  for (const SolidPart& part : piece.parts) AppendHullPoints(part, distance_, points);
+  for (const SolidPart& part : piece.parts) AppendHullPoints(part, distance_, stride, points);
   MatrixX3 P(static_cast<int>(points.size()), 3);
   for (std::size_t i = 0; i < points.size(); ++i) P.row(i) = points[i].transpose();
   return P;
 }
 
 bool PieceMaker::Close(Piece& piece) const {
-  return CloseAround(GatherPoints(piece), kWorkingShare * config_.tolerance, piece);
+  return CloseAround(GatherPoints(piece, kAll), kWorkingShare * config_.tolerance, piece);
+}
+
+bool PieceMaker::CloseRoughly(Piece& piece) const {
+  return CloseAround(GatherPoints(piece, kFew), kRoughShare * config_.tolerance, piece);
 }
 
 void PieceMaker::Finish(Piece& piece) const {
-  if (CloseAround(GatherPoints(piece), config_.tolerance, piece)) Measure(piece);
+  CloseAround(GatherPoints(piece, kAll), config_.tolerance, piece);
 }
 
 bool PieceMaker::CloseAround(const MatrixX3& P, double tolerance, Piece& piece) const {
@@ -107,7 +122,6 @@ bool PieceMaker::Join(const std::vector<const Piece*>& members, Piece& joined) c
   for (const Piece* member : members) {
     P.middleRows(next, member->hull.V.rows()) = member->hull.V;
     next += static_cast<int>(member->hull.V.rows());
-    joined.parts.insert(joined.parts.end(), member->parts.begin(), member->parts.end());
   }
   if (!CloseAround(P, kWorkingShare * config_.tolerance, joined)) return false;
   Measure(joined);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "app/geometry/bounds.h"
@@ -35,22 +36,26 @@ class PieceMaker {
   /// finer than the configuration asks for, so that joining again and again loses little.
   bool Close(Piece& piece) const;
 
-  /// Closes the piece as the configuration asks for, and measures it.
+  /// The same by an even share of the triangles and coarser, to compare cuts by.
+  bool CloseRoughly(Piece& piece) const;
+
+  /// Closes the piece as the configuration asks for.
   void Finish(Piece& piece) const;
 
   /// Fills in how far the hull reaches outside the solid.
   void Measure(Piece& piece) const;
 
-  /// The pieces `members` as one, measured; false when they have no volume.
+  /// The pieces `members` as one, measured but without parts; false when they have no volume.
   bool Join(const std::vector<const Piece*>& members, Piece& joined) const;
 
   const MeshDistance& distance() const { return distance_; }
   const DistanceBounds& roughly() const { return roughly_; }
   double size() const { return size_; }  ///< the solid's diagonal [m]
+  double snap() const;                   ///< corners this near to a cut count as on it [m]
 
  private:
   bool CloseAround(const MatrixX3& P, double tolerance, Piece& piece) const;
-  MatrixX3 GatherPoints(const Piece& piece) const;
+  MatrixX3 GatherPoints(const Piece& piece, std::size_t most) const;
 
   const TriangleMesh& mesh_;
   const DecomposeConfig& config_;

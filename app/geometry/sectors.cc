@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -16,15 +17,15 @@ constexpr int kFewest = 6, kMost = 64;  // sectors
 constexpr int kMaxFacets = 40;          // that cuts follow, the largest of a piece
 
 struct SectorPlan {
-  int count = 0;              // of sectors
-  double first = 0.0;         // angle from `towards` to the middle of sector 0
-  std::vector<Piece> pieces;  // of the sector opposite `towards`
+  int count = 0;                                                // of sectors
+  std::vector<Piece> pieces;                                    // of the sector opposite `towards`
   double protrusion = std::numeric_limits<double>::infinity();  // the largest [m]
   double cost = std::numeric_limits<double>::infinity();        // pieces in all sectors
 };
 
-struct Segment {  // of a profile, as (distance from the axis, height along it)
-  Vector2 a, b;
+struct Facet {  // of a profile, as (distance from the axis, height along it)
+  std::array<Vector2, 3> corners;
+  Vector2 normal = Vector2::Zero();
 };
 
 struct Line {
@@ -45,25 +46,26 @@ struct Meridian {
     return {nhat, line.offset + nhat.dot(p_B)};
   }
 
-  // The piece's edges, and the axis between those of its corners that are as near to it as
+  // The piece's triangles, and the axis between those of its corners that are as near to it as
   // `axis_radius` [m].
-  std::vector<Segment> Project(const Piece& piece, double axis_radius) const {
-    std::vector<Segment> segments;
+  std::vector<Facet> Project(const Piece& piece, double axis_radius) const {
+    std::vector<Facet> profile;
     Vector2 low(0.0, std::numeric_limits<double>::infinity()), high(0.0, -low.y());
     for (const SolidPart& part : piece.parts) {
       for (const Triangle& t : part.surface) {
-        std::array<Vector2, 3> p;
+        Facet facet;
+        facet.normal = Direction((t[1] - t[0]).cross(t[2] - t[0]));
         for (int i = 0; i < 3; ++i) {
-          p[i] = Point(t[i]);
-          if (p[i].x() > axis_radius) continue;
-          low.y() = std::min(low.y(), p[i].y());
-          high.y() = std::max(high.y(), p[i].y());
+          const Vector2& p = facet.corners[i] = Point(t[i]);
+          if (p.x() > axis_radius) continue;
+          low.y() = std::min(low.y(), p.y());
+          high.y() = std::max(high.y(), p.y());
         }
-        for (int i = 0; i < 3; ++i) segments.push_back({p[i], p[(i + 1) % 3]});
+        profile.push_back(facet);
       }
     }
-    if (low.y() < high.y()) segments.push_back({low, high});
-    return segments;
+    if (low.y() < high.y()) profile.push_back({{low, high, high}});
+    return profile;
   }
 };
 
@@ -96,21 +98,34 @@ double CalcRevolvedVolume(std::vector<Vector2>& points) {
   return moment;
 }
 
-// Of the parts of a profile on both sides of a line; infinite when one is empty.
-double CalcVolumeOfHulls(const std::vector<Segment>& profile, const Line& line) {
-  std::array<std::vector<Vector2>, 2> sides;
-  for (const Segment& segment : profile) {
-    const double h = line.Height(segment.a), k = line.Height(segment.b);
-    sides[h > 0.0 ? 1 : 0].push_back(segment.a);
-    if (h * k < 0.0) {
-      const Vector2 p = segment.a + h / (h - k) * (segment.b - segment.a);
-      for (std::vector<Vector2>& side : sides) side.push_back(p);
+// Of the parts of a profile on both sides of a line; infinite when one is empty. Heights within
+// `snap` [m] are on the line; a facet on it goes to the side on which its solid is.
+double CalcVolumeOfHulls(const std::vector<Facet>& profile, const Line& line, double snap) {
+  std::vector<Vector2> below, above;
+  for (const Facet& facet : profile) {
+    std::array<double, 3> height{};
+    for (int i = 0; i < 3; ++i) {
+      height[i] = line.Height(facet.corners[i]);
+      if (std::abs(height[i]) < snap) height[i] = 0.0;
     }
-    if (h == 0.0) sides[1].push_back(segment.a);
+    const auto [low, high] = std::minmax_element(height.begin(), height.end());
+    const bool flat = *low == 0.0 && *high == 0.0;
+    const bool is_below = *low < 0.0 || (flat && facet.normal.dot(line.nhat) > 0.0);
+    const bool is_above = *high > 0.0 || (flat && !is_below);
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      if (is_below && height[i] <= 0.0) below.push_back(facet.corners[i]);
+      if (is_above && height[i] >= 0.0) above.push_back(facet.corners[i]);
+      if (height[i] * height[j] < 0.0) {
+        const double s = height[i] / (height[i] - height[j]);
+        below.emplace_back(facet.corners[i] + s * (facet.corners[j] - facet.corners[i]));
+        above.push_back(below.back());
+      }
+    }
   }
   double volume = 0.0;
-  for (std::vector<Vector2>& side : sides) {
-    const double one = CalcRevolvedVolume(side);
+  for (std::vector<Vector2>* side : {&below, &above}) {
+    const double one = CalcRevolvedVolume(*side);
     if (!(one > 0.0)) return std::numeric_limits<double>::infinity();
     volume += one;
   }
@@ -162,8 +177,8 @@ class SectorCutter {
     return {48, 40, 32, 28, 24, 22, 20, 18, 16, 14, 12, 10, 8};
   }
 
-  // A polygon's sectors begin at corners; others have what spoils the symmetry in their middle.
-  double FirstMiddle(int count) const { return revolution_.sides > 0 ? kPi / count : 0.0; }
+  // Sectors begin at corners.
+  static double CalcMiddle(int count, int k) { return (2 * k + 1) * kPi / count; }
 
   Plane PlaneAt(double angle) const {
     const Vector3 nhat = revolution_.Turn(angle) * revolution_.axis.cross(revolution_.towards);
@@ -171,7 +186,7 @@ class SectorCutter {
   }
 
   Piece CutSector(int count, int k) const {
-    const double middle = FirstMiddle(count) + 2.0 * kPi * k / count, half = kPi / count;
+    const double middle = CalcMiddle(count, k), half = kPi / count;
     return maker_.CutBelow(maker_.CutBelow(whole_, PlaneAt(middle + half)),
                            PlaneAt(middle - half).Turned());
   }
@@ -186,16 +201,18 @@ class SectorCutter {
   // Lines that may cut a profile: in even directions and distances, and at the corners of its
   // largest facets, along and across them.
   std::vector<Line> ListLines(const Piece& piece, const Meridian& meridian,
-                              const std::vector<Segment>& profile) const {
+                              const std::vector<Facet>& profile) const {
     std::vector<Line> lines;
     constexpr int kDirections = 8, kAcross = 7;
     for (int d = 0; d < kDirections; ++d) {
       const double angle = kPi * d / kDirections;
       const Vector2 nhat(std::cos(angle), std::sin(angle));
       double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (const Segment& segment : profile) {
-        low = std::min(low, nhat.dot(segment.a));
-        high = std::max(high, nhat.dot(segment.a));
+      for (const Facet& facet : profile) {
+        for (const Vector2& p : facet.corners) {
+          low = std::min(low, nhat.dot(p));
+          high = std::max(high, nhat.dot(p));
+        }
       }
       for (int i = 1; i <= kAcross; ++i) {
         lines.push_back({nhat, low + (high - low) * i / (kAcross + 1)});
@@ -216,7 +233,7 @@ class SectorCutter {
 
   // The cut whose two hulls, as solids of revolution, hold least.
   std::vector<Piece> FindHalves(const Piece& piece, const Meridian& meridian) const {
-    const std::vector<Segment> profile = meridian.Project(piece, kAxisShare * maker_.size());
+    const std::vector<Facet> profile = meridian.Project(piece, kAxisShare * maker_.size());
     std::vector<std::pair<double, Line>> ranked;
     std::vector<Line> tried;
     for (const Line& line : ListLines(piece, meridian, profile)) {
@@ -227,7 +244,7 @@ class SectorCutter {
       });
       if (similar) continue;
       tried.push_back(line);
-      const double volume = CalcVolumeOfHulls(profile, line);
+      const double volume = CalcVolumeOfHulls(profile, line, maker_.snap());
       if (std::isfinite(volume)) ranked.emplace_back(volume, line);
     }
     std::stable_sort(ranked.begin(), ranked.end(),
@@ -257,7 +274,7 @@ class SectorCutter {
     SectorPlan plan;
     plan.count = count;
     const int opposite = count / 2;
-    const double middle = FirstMiddle(count) + 2.0 * kPi * opposite / count;
+    const double middle = CalcMiddle(count, opposite);
     const Meridian meridian{revolution_.p_B, revolution_.axis,
                             revolution_.Turn(middle) * revolution_.towards};
     Piece sector = CutSector(count, opposite);
@@ -300,6 +317,9 @@ class SectorCutter {
       Piece joined;
       if (!ring.empty() && IsAtAxis(ring.front()) && maker_.Join(members, joined) &&
           joined.protrusion <= limit_) {
+        for (Piece& piece : ring) {
+          std::move(piece.parts.begin(), piece.parts.end(), std::back_inserter(joined.parts));
+        }
         pieces.push_back(std::move(joined));
       } else {
         for (Piece& piece : ring) pieces.push_back(std::move(piece));
