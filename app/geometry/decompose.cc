@@ -27,13 +27,16 @@ namespace {
 constexpr int kTrials = 4;        // cuts that are tried out, the best by pairs
 constexpr double kOvercut = 1.6;  // pieces before merging, in multiples of those wanted
 
+// Share of its hull from which on a solid has no cavity worth more than a quarter of the pieces.
+constexpr double kFull = 0.9;
+
 class Decomposer {
  public:
   Decomposer(const TriangleMesh& mesh, const DecomposeConfig& config)
       : mesh_(mesh),
         config_(config),
         limit_(config.free_concavity),
-        most_(static_cast<int>(kOvercut * config.max_pieces)),
+        max_pieces_(config.max_pieces),
         maker_(mesh, config),
         cuts_(mesh, maker_.roughly(), maker_.size()) {}
 
@@ -43,16 +46,19 @@ class Decomposer {
       // Sectors of a mesh whose corners are not aligned, as of a scan, have no edges to follow.
       const auto revolution = FindRevolution(mesh_);
       if (revolution && revolution->sides > 0) {
-        Sectors sectors = CutIntoSectors(maker_, *revolution, config_.concavity, most_);
+        Sectors sectors = CutIntoSectors(maker_, *revolution, config_.concavity, most());
         pieces_ = std::move(sectors.pieces);
         if (!pieces_.empty()) limit_ = std::max(config_.concavity, sectors.protrusion);
       }
       cuts_.FindReflexPlanes();
     }
-    if (pieces_.empty()) pieces_.push_back(std::move(whole));
-    while (static_cast<int>(pieces_.size()) < most_ && CutWorst()) {
+    if (pieces_.empty()) {
+      if (CalcVolume(mesh_) > kFull * whole.volume) max_pieces_ = (max_pieces_ + 3) / 4;
+      pieces_.push_back(std::move(whole));
     }
-    MergePieces(maker_, limit_, config_.max_pieces, pieces_);
+    while (static_cast<int>(pieces_.size()) < most() && CutWorst()) {
+    }
+    MergePieces(maker_, limit_, max_pieces_, pieces_);
     std::vector<TriangleMesh> hulls;
     hulls.reserve(pieces_.size());
     for (Piece& piece : pieces_) {
@@ -63,6 +69,8 @@ class Decomposer {
   }
 
  private:
+  int most() const { return static_cast<int>(kOvercut * max_pieces_); }  // pieces before merging
+
   struct Halves {
     std::vector<Piece> pieces;
     double worst = std::numeric_limits<double>::infinity();
@@ -137,7 +145,7 @@ class Decomposer {
   const TriangleMesh& mesh_;
   const DecomposeConfig& config_;
   double limit_;  // how far pieces may reach outside [m]
-  int most_;      // pieces before merging
+  int max_pieces_;
   PieceMaker maker_;
   CutFinder cuts_;
   std::vector<Piece> pieces_;

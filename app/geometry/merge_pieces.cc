@@ -9,10 +9,13 @@
 namespace pregrasp {
 namespace {
 
+constexpr int kFiner = 4;  // a joint is looked at in so many times the points of a cut's halves
+
 // Two pieces that may become one.
 struct Joint {
   std::size_t i = 0, j = 0;
   double protrusion = 0.0;     // a lower bound, until there is a piece [m]
+  bool rough = false;          // the bound is that of a coarser hull
   std::optional<Piece> piece;  // without its parts
 
   bool operator<(const Joint& other) const {
@@ -34,8 +37,15 @@ class Joiner {
     while (!joints_.empty()) {
       const auto best = std::min_element(joints_.begin(), joints_.end());
       if (best->piece) return &*best;
+      const std::vector<const Piece*> members{&pieces_[best->i], &pieces_[best->j]};
       Piece joined;
-      if (maker_.Join({&pieces_[best->i], &pieces_[best->j]}, joined)) {
+      if (!best->rough) {
+        best->rough = true;
+        if (maker_.JoinRoughly(members, joined)) {
+          best->protrusion = std::max(best->protrusion, joined.protrusion);
+        }
+      } else if (maker_.Join(members, joined)) {
+        maker_.Measure(joined, kFiner);
         best->protrusion = joined.protrusion;
         best->piece = std::move(joined);
       } else {
@@ -86,7 +96,7 @@ class Joiner {
     reach.max().array() += limit_;
     for (std::size_t j = 0; j < i; ++j) {
       if (gone_[j] || reach.intersection(pieces_[j].bounds).isEmpty()) continue;
-      joints_.push_back({i, j, BoundJoint(pieces_[i], pieces_[j]), {}});
+      joints_.push_back({i, j, BoundJoint(pieces_[i], pieces_[j]), false, {}});
     }
   }
 

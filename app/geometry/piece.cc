@@ -27,6 +27,18 @@ constexpr double kRoughShare = 4.0;
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kFew = 1000;
 
+MatrixX3 GatherCorners(const std::vector<const Piece*>& members) {
+  int rows = 0;
+  for (const Piece* member : members) rows += static_cast<int>(member->hull.V.rows());
+  MatrixX3 P(rows, 3);
+  int next = 0;
+  for (const Piece* member : members) {
+    P.middleRows(next, member->hull.V.rows()) = member->hull.V;
+    next += static_cast<int>(member->hull.V.rows());
+  }
+  return P;
+}
+
 }  // namespace
 
 PieceMaker::PieceMaker(const TriangleMesh& mesh, const DecomposeConfig& config)
@@ -91,7 +103,7 @@ bool PieceMaker::CloseAround(const MatrixX3& P, double tolerance, Piece& piece) 
   return true;
 }
 
-void PieceMaker::Measure(Piece& piece) const {
+void PieceMaker::Measure(Piece& piece, int finer) const {
   const TriangleMesh& hull = piece.hull;
   double farthest = 0.0;
   const auto visit = [&](const Vector3& p) { farthest = roughly_.CalcAbove(p, farthest); };
@@ -110,20 +122,18 @@ void PieceMaker::Measure(Piece& piece) const {
   const int samples =
       static_cast<int>(std::clamp<double>(sum / (spacing * spacing), kFewestSamples, kMostSamples));
   VisitSamples(
-      sums, samples, rng, [&](int f) { return FaceOf(hull, f); }, visit);
+      sums, finer * samples, rng, [&](int f) { return FaceOf(hull, f); }, visit);
   piece.protrusion = farthest;
 }
 
 bool PieceMaker::Join(const std::vector<const Piece*>& members, Piece& joined) const {
-  int rows = 0;
-  for (const Piece* member : members) rows += static_cast<int>(member->hull.V.rows());
-  MatrixX3 P(rows, 3);
-  int next = 0;
-  for (const Piece* member : members) {
-    P.middleRows(next, member->hull.V.rows()) = member->hull.V;
-    next += static_cast<int>(member->hull.V.rows());
-  }
-  if (!CloseAround(P, kWorkingShare * config_.tolerance, joined)) return false;
+  if (!CloseAround(GatherCorners(members), kWorkingShare * config_.tolerance, joined)) return false;
+  Measure(joined);
+  return true;
+}
+
+bool PieceMaker::JoinRoughly(const std::vector<const Piece*>& members, Piece& joined) const {
+  if (!CloseAround(GatherCorners(members), kRoughShare * config_.tolerance, joined)) return false;
   Measure(joined);
   return true;
 }

@@ -42,11 +42,14 @@ class PieceMaker {
   /// Closes the piece as the configuration asks for.
   void Finish(Piece& piece) const;
 
-  /// Fills in how far the hull reaches outside the solid.
-  void Measure(Piece& piece) const;
+  /// Fills in how far the hull reaches outside the solid, by `finer` times the usual points.
+  void Measure(Piece& piece, int finer = 1) const;
 
   /// The pieces `members` as one, measured but without parts; false when they have no volume.
   bool Join(const std::vector<const Piece*>& members, Piece& joined) const;
+
+  /// The same coarser: reaches no farther outside.
+  bool JoinRoughly(const std::vector<const Piece*>& members, Piece& joined) const;
 
   const MeshDistance& distance() const { return distance_; }
   const DistanceBounds& roughly() const { return roughly_; }

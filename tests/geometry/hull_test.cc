@@ -146,6 +146,14 @@ std::vector<Hollow> HollowShapes() {
   };
 }
 
+TEST(DecomposeConvexTest, ALidIsItsDiscAndItsPlugExactly) {
+  const Shape shape = MakeMesh(testing::Revolve(
+      {{0, -0.006}, {0.0415, -0.006}, {0.042, 0}, {0.054, 0}, {0.054, 0.003}, {0, 0.003}}, 48));
+  const auto pieces = DecomposeConvex(shape);
+  EXPECT_EQ(pieces.size(), 2U);
+  EXPECT_LT(CalcProtrusion(shape, pieces), 1e-9);
+}
+
 TEST(DecomposeConvexTest, PiecesAreConvexCoverTheShapeAndLeaveCavitiesOpen) {
   for (const Hollow& hollow : HollowShapes()) {
     const Shape shape = MakeMesh(hollow.mesh);
