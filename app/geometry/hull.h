@@ -18,8 +18,9 @@ TriangleMesh CalcReducedHull(const MatrixX3& points, double tolerance, int max_v
 
 /// How shapes that are not convex are taken apart.
 struct DecomposeConfig {
-  /// At most so many pieces for a mesh that is not convex. More keep cavities more open and cost
-  /// contact simulation more; a mug takes about 40.
+  /// At most so many pieces for a mesh that is not convex, and a quarter of them for one that fills
+  /// 90 % of its hull, unless it is cut into sectors. More keep cavities more open and cost contact
+  /// simulation more; a mug takes about 40.
   int max_pieces = 96;
   /// How far a piece may reach outside the shape before it is split further [m], where it is a
   /// sector of a solid of revolution. Where that takes too many pieces they reach farther, which
