@@ -19,7 +19,7 @@ struct BodyVelocity {
   Vector3 w_P = Vector3::Zero();
 };
 
-/// Impulse at a point, along the contact's normal and two tangents [N s].
+/// Impulse at a point, along the contact's two tangents and its normal [N s].
 struct PointImpulse {
   Vector2 t = Vector2::Zero();
   double n = 0.0;
@@ -37,7 +37,8 @@ struct PointImpulse {
   }
 };
 
-/// The angular parts of a point's rows on one body, in its w_P: normal, and the two tangents.
+/// The angular parts of a point's rows on one body, in its w_P: of the two tangents, and the
+/// normal.
 struct PointArms {
   Eigen::Matrix<double, 2, 3> t;
   Vector3 n;
@@ -115,8 +116,8 @@ class RelativeVelocity {
     }
     v_t_[0] = rows.axes_W.col(0).dot(v_W);
     v_t_[1] = rows.axes_W.col(1).dot(v_W);
-    v_n_ = rows.axes_W.col(2).dot(v_W);
-    start_ = {v_t_, v_n_};
+    v_t_start_ = v_t_;
+    v_n_ = v_n_start_ = rows.axes_W.col(2).dot(v_W);
   }
 
   /// Velocity along the normal, on top of `bias`.
@@ -150,8 +151,9 @@ class RelativeVelocity {
   }
 
   void Store(BodyVelocity* y) const {
-    const PointImpulse sum = (PointImpulse{v_t_, v_n_} - start_) * (1.0 / rows_.inv_mass_sum);
-    const Vector3 impulse_W = rows_.ToWorld(sum);
+    const double mass = 1.0 / rows_.inv_mass_sum;
+    const Vector3 impulse_W =
+        rows_.ToWorld({(v_t_ - v_t_start_) * mass, (v_n_ - v_n_start_) * mass});
     y[rows_.first].v_W += rows_.sign_first * rows_.inv_mass_first * impulse_W;
     first_.Store(&y[rows_.first].w_P);
     if constexpr (kTwo) {
@@ -187,9 +189,8 @@ class RelativeVelocity {
   };
 
   const ContactRows& rows_;
-  Vector2 v_t_;
-  double v_n_;
-  PointImpulse start_;  // velocities, in fact
+  Vector2 v_t_, v_t_start_;
+  double v_n_, v_n_start_;
   Turn first_, second_;
 };
 

@@ -155,7 +155,7 @@ function Session:settle(options) end
 function Session:simulate(options) end
 
 ---@class SimulateOptions
----@field trace? boolean every step tells its energies too: in `trace`, in the log, in pictures, and step by step in trace.jsonl; false
+---@field trace? boolean every step tells its energies too: in `trace`, log and pictures, all in trace.jsonl; false
 
 ---From now on every step goes to a run directory: its log pair, and pictures of the start and of each
 ---shot{} ("key"), of every step ("all"), or none. It is finished by save(), or at the script's end.
