@@ -234,8 +234,8 @@ void CollisionScene::CollidePair(const Pair& pair, double margin, Scratch* scrat
   const CollisionBody &a = bodies_[pair.a], &b = bodies_[pair.b];
   const PlacedConvex *pieces_a = Placed(a, *scratch), *pieces_b = Placed(b, *scratch);
   const Bounds& bounds_b = GetBounds(pair.b, *scratch);
-  const bool several =
-      a.pieces.size() > 1 || b.pieces.size() > 1;  // or the bodies' are the pieces'
+  // Where each body is one piece, their bounds have met already.
+  const bool several = a.pieces.size() > 1 || b.pieces.size() > 1;
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
     if (several && !pieces_a[i].bounds.IsWithin(margin, bounds_b)) continue;
     for (std::size_t j = 0; j < b.pieces.size(); ++j) {
