@@ -128,7 +128,7 @@ class RelativeVelocity {
   }
 
   Vector2 GetSlip(const PointRows& point) const {
-    const Vector2 v = first_.AddTangents(point.first, v_t_);
+    Vector2 v = first_.AddTangents(point.first, v_t_);
     if constexpr (kTwo) return second_.AddTangents(point.second, v);
     return v;
   }

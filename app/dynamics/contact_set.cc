@@ -37,19 +37,6 @@ void Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_WB, Place
   placed->bounds = BoundsOf(placed->R_WP, placed->p_WP, convex.half);
 }
 
-// The points of two bodies that bore load. Takes them and all before them off `cache`, which is in
-// the order of the pairs.
-std::span<const WorldState::CachedImpulse> TakeLoaded(
-    std::uint64_t key, std::span<const WorldState::CachedImpulse>* cache) {
-  std::size_t begin = 0;
-  while (begin < cache->size() && PairOfKey((*cache)[begin].key) < PairOfKey(key)) ++begin;
-  std::size_t end = begin;
-  while (end < cache->size() && PairOfKey((*cache)[end].key) == PairOfKey(key)) ++end;
-  const auto loaded = cache->subspan(begin, end - begin);
-  *cache = cache->subspan(end);
-  return loaded;
-}
-
 // The tangent plane of a contact, on the surface of the body that does not move, or of a.
 ContactPlane PlaneOf(const Contact& contact) {
   const Manifold& manifold = contact.manifold;
@@ -145,6 +132,17 @@ int FindOverlapping(const Manifold& manifold, const Approach& approach) {
 }
 
 }  // namespace
+
+std::span<const WorldState::CachedImpulse> TakePair(
+    std::uint64_t pair, std::span<const WorldState::CachedImpulse>* cache) {
+  std::size_t begin = 0;
+  while (begin < cache->size() && PairOfKey((*cache)[begin].key) < pair) ++begin;
+  std::size_t end = begin;
+  while (end < cache->size() && PairOfKey((*cache)[end].key) == pair) ++end;
+  const auto impulses = cache->subspan(begin, end - begin);
+  *cache = cache->subspan(end);
+  return impulses;
+}
 
 CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(margin) {
   const int num_bodies = static_cast<int>(scene.bodies.size());
@@ -272,7 +270,7 @@ void CollisionScene::FindContacts(const std::vector<BodyKernel>& kernels,
     const CollisionBody &a = bodies_[pair.a], &b = bodies_[pair.b];
     const double margin = margin_ + distance(a.movable) + distance(b.movable);
     if (GetBounds(pair.a, *scratch).IsWithin(margin, GetBounds(pair.b, *scratch))) {
-      const auto loaded = TakeLoaded(MakeKey(pair.a, pair.b, 0, 0), &cache_left);
+      const auto loaded = TakePair(PairOfKey(MakeKey(pair.a, pair.b, 0, 0)), &cache_left);
       const std::size_t first = contacts->size();
       CollidePair(pair, margin, scratch, loaded, contacts);
       if (contacts->size() > first + 1) MergeCoplanar(first, scratch, contacts);

@@ -15,6 +15,11 @@ namespace pregrasp {
 /// What two bodies have in common among the keys of their contacts' points.
 inline constexpr std::uint64_t PairOfKey(std::uint64_t key) { return key >> 40; }
 
+/// The impulses between the two bodies that `pair` names. Takes them and all before them off
+/// `cache`, which is in the order of the pairs.
+std::span<const WorldState::CachedImpulse> TakePair(
+    std::uint64_t pair, std::span<const WorldState::CachedImpulse>* cache);
+
 /// A contact between two bodies in one step: of two convex pieces, or of several pieces along one
 /// plane.
 struct Contact {

@@ -189,12 +189,7 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
     crowded_ = crowded_ || contacts[c].manifold.crowded;
     const std::uint64_t pair = PairOfKey(contacts[c].manifold.points[0].key);
     if (c == 0 || pair != PairOfKey(contacts[c - 1].manifold.points[0].key)) {
-      const auto before = [](const WorldState::CachedImpulse& cached) {
-        return PairOfKey(cached.key);
-      };
-      const auto range = std::ranges::equal_range(cache_left, pair, {}, before);
-      cached = {range.begin(), range.end()};
-      cache_left = {range.end(), cache_left.end()};
+      cached = TakePair(pair, &cache_left);
       next = 0;
     }
     FindImpulses(contacts[c], cached, &next, &start_W);

@@ -175,7 +175,7 @@ TriangleMesh CalcReducedHull(const MatrixX3& points, double tolerance, int max_v
   for (;;) {
     MatrixX3 subset(static_cast<int>(chosen.size()), 3);
     for (std::size_t i = 0; i < chosen.size(); ++i) subset.row(i) = points.row(chosen[i]);
-    const TriangleMesh hull = CalcConvexHull(subset);
+    TriangleMesh hull = CalcConvexHull(subset);
     const std::vector<Farthest> proposals = DropInside(points, hull, tolerance, outside);
     const int room = max_vertices - static_cast<int>(chosen.size());
     if (proposals.empty() || room <= 0) return hull;

@@ -82,7 +82,7 @@ class Joiner {
   double BoundJoint(const Piece& a, const Piece& b) const {
     double farthest = 0.0;
     constexpr int kLines = 96;
-    for (int k = 0; k < kLines; ++k) {
+    for (Eigen::Index k = 0; k < kLines; ++k) {
       const Vector3 p = a.hull.V.row((k * 7) % a.hull.V.rows());
       const Vector3 q = b.hull.V.row((k * 5) % b.hull.V.rows());
       farthest = maker_.roughly().CalcAbove(0.5 * (p + q), farthest);

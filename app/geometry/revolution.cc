@@ -54,6 +54,7 @@ Line FitLine(const std::vector<Facet>& facets, const std::vector<double>& weight
 
 Line Refine(const std::vector<Facet>& facets, int rank) {
   std::vector<double> weights;
+  weights.reserve(facets.size());
   for (const Facet& facet : facets) weights.push_back(facet.area);
   Line line = FitLine(facets, weights, rank);
   for (int round = 0; round < kRounds; ++round) {

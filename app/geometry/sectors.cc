@@ -313,6 +313,7 @@ class SectorCutter {
     std::vector<Piece> pieces;
     for (std::vector<Piece>& ring : copies) {
       std::vector<const Piece*> members;
+      members.reserve(ring.size());
       for (const Piece& piece : ring) members.push_back(&piece);
       Piece joined;
       if (!ring.empty() && IsAtAxis(ring.front()) && maker_.Join(members, joined) &&
