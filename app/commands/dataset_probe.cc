@@ -117,6 +117,7 @@ class Prober {
   std::vector<double> Score(const std::vector<RigidTransform>& X_WB,
                             const std::vector<PlanningContacts>& contacts) const {
     std::vector<ScoredState> states;
+    states.reserve(contacts.size());
     for (const PlanningContacts& each : contacts) states.push_back({X_WB, ToPlacement(each)});
     return scorer_.Score(states);
   }

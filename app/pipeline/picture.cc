@@ -78,7 +78,7 @@ RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const
     Append(seen_W, TransformPoints(ghost.X_WO, meshes[0]->V));
   }
   Append(seen_W, overlay.focus_W);
-  const RenderCamera at_start = FrameCamera(start_focus_W, view_W, aspect);
+  RenderCamera at_start = FrameCamera(start_focus_W, view_W, aspect);
   constexpr double kBorder = 0.08;
   if (IsInSight(at_start, seen_W, aspect, kBorder)) return at_start;
   MatrixX3 focus_W = start_focus_W;

@@ -94,7 +94,7 @@ SettleResult Session::Settle(double seconds) {
                      fmt::format("{}", seconds));
   }
   const WorldState before = start_;
-  const SettleResult result = pregrasp::Settle(*world_, start_, seconds);
+  SettleResult result = pregrasp::Settle(*world_, start_, seconds);
   start_.t = 0.0;
   start_.step = 0;
   start_id_ = "scene.settle";
@@ -322,7 +322,7 @@ void Session::Finish(JournalWriter& writer, const std::optional<std::string>& st
 
 std::filesystem::path Session::Save(const std::optional<std::filesystem::path>& directory) {
   if (recorder_ && (!directory || *directory == recorder_->directory())) {
-    const std::filesystem::path where = recorder_->directory();
+    std::filesystem::path where = recorder_->directory();
     FinishRecording();
     return where;
   }
