@@ -44,8 +44,7 @@ class Joiner {
         if (maker_.JoinRoughly(members, joined)) {
           best->protrusion = std::max(best->protrusion, joined.protrusion);
         }
-      } else if (maker_.Join(members, joined)) {
-        maker_.Measure(joined, kFiner);
+      } else if (maker_.Join(members, joined, kFiner)) {
         best->protrusion = joined.protrusion;
         best->piece = std::move(joined);
       } else {

@@ -126,9 +126,9 @@ void PieceMaker::Measure(Piece& piece, int finer) const {
   piece.protrusion = farthest;
 }
 
-bool PieceMaker::Join(const std::vector<const Piece*>& members, Piece& joined) const {
+bool PieceMaker::Join(const std::vector<const Piece*>& members, Piece& joined, int finer) const {
   if (!CloseAround(GatherCorners(members), kWorkingShare * config_.tolerance, joined)) return false;
-  Measure(joined);
+  Measure(joined, finer);
   return true;
 }
 

@@ -45,8 +45,9 @@ class PieceMaker {
   /// Fills in how far the hull reaches outside the solid, by `finer` times the usual points.
   void Measure(Piece& piece, int finer = 1) const;
 
-  /// The pieces `members` as one, measured but without parts; false when they have no volume.
-  bool Join(const std::vector<const Piece*>& members, Piece& joined) const;
+  /// The pieces `members` as one, measured by `finer` times the usual points but without parts;
+  /// false when they have no volume.
+  bool Join(const std::vector<const Piece*>& members, Piece& joined, int finer = 1) const;
 
   /// The same coarser: reaches no farther outside.
   bool JoinRoughly(const std::vector<const Piece*>& members, Piece& joined) const;
