@@ -211,7 +211,7 @@ class BoxPair {
 
     manifold->nhat_W = (flip ? -s : s) * ref.R_WP.col(i);
     FacePoints own;
-    FacePoints& points = manifold->store != nullptr ? *manifold->store->Next() : own;
+    FacePoints& points = manifold->NextFace(&own);
     for (int n = 0; n < polygon.size; ++n) {
       const ClipPoint& point = polygon.points[n];
       if (point.height > margin_) continue;

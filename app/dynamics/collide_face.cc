@@ -96,7 +96,7 @@ void AddPolytopeVertices(const FacePlane& plane, Manifold* manifold) {
   const double base = plane.s * plane.p_AQ[plane.i] - plane.a.convex->half[plane.i];
   const double limit = plane.margin - base;
   FacePoints own;
-  FacePoints& points = manifold->store != nullptr ? *manifold->store->Next() : own;
+  FacePoints& points = manifold->NextFace(&own);
   const auto add = [&](int i, double height) {
     points.Add(x.dot(vertices[i]), y.dot(vertices[i]), base + height,
                static_cast<std::uint32_t>(i) | plane.flag);

@@ -115,8 +115,7 @@ int FindOverlapping(const Manifold& manifold, const Approach& approach) {
   const FacePoints& points = *manifold.face;
   std::array<double, FacePoints::kMaxSize> memory;
   Eigen::Map<Eigen::ArrayXd> gaps(memory.data(), points.size);
-  gaps = points.phis() + approach.at_origin + approach.per_x * points.xs() +
-         approach.per_y * points.ys();
+  gaps = approach.GapsAfter(points);
   if (gaps.minCoeff() > -kMaxSinking) return -1;
   const auto is_in = [&](int i) { return manifold.Has(manifold.key + points.keys[i]); };
   int deepest = -1;

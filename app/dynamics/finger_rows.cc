@@ -28,10 +28,9 @@ FingertipLaw::FingertipLaw(const FingertipConfig& config, double object_mass, do
     : stiffness(config.stiffness),
       damping(config.damping * std::sqrt(config.stiffness * object_mass)),
       friction(config.friction),
-      max_force(config.max_force),
       dt(dt_in),
       inv_dt(1.0 / dt),
-      max_impulse(dt * max_force),
+      max_impulse(dt * config.max_force),
       gain(stiffness / (dt * stiffness + damping)),
       gamma(1.0 / (dt * (dt * stiffness + damping))),
       inv_gamma(1.0 / gamma) {}

@@ -11,8 +11,7 @@ struct FingertipLaw {
   double stiffness = 0.0;  ///< k [N/m]
   double damping = 0.0;    ///< b [N s/m]
   double friction = 0.0;
-  double max_force = 0.0;  ///< [N]
-  double dt = 0.0;         ///< h [s]
+  double dt = 0.0;  ///< h [s]
   double inv_dt = 0.0;
   double max_impulse = 0.0;  ///< [N s]
   double gain = 0.0;         ///< k / (h k + b): velocity per stretch of the spring [1/s]

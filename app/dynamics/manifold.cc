@@ -49,8 +49,7 @@ int FindLargest(const Values& values, double least) {
 int ChooseFour(const FacePoints& points, const Approach& approach, int* chosen) {
   std::array<double, FacePoints::kMaxSize> memory;
   Values values(memory.data(), points.size);
-  values = points.phis() + approach.at_origin + approach.per_x * points.xs() +
-           approach.per_y * points.ys();
+  values = approach.GapsAfter(points);
   const double deepest = values.minCoeff();
   int first = 0;
   while (values[first] > deepest + kDepthTie) ++first;

@@ -98,6 +98,8 @@ struct Manifold {
     face = nullptr;
     crowded = false;
   }
+  /// An empty face: the store's next, or `own` if there is no store.
+  FacePoints& NextFace(FacePoints* own) const { return store != nullptr ? *store->Next() : *own; }
   void Add(const Vector3& p_W, double phi, std::uint64_t feature) {
     points[size++] = {p_W, phi, key + feature};
   }
@@ -119,7 +121,10 @@ struct Approach {
   Approach(const Vector3& shift_W, const Vector3& turn_W, const Vector3& nhat_W,
            const ContactPlane& plane);
 
-  double At(double x, double y) const { return at_origin + per_x * x + per_y * y; }
+  /// The points' gaps at the end of the step [m].
+  auto GapsAfter(const FacePoints& points) const {
+    return points.phis() + at_origin + per_x * points.xs() + per_y * points.ys();
+  }
 };
 
 /// Adds those of a face's points that are chosen. Four at most stand for all: the deepest at the

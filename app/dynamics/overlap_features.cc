@@ -376,7 +376,7 @@ class Overlap {
       return manifold->size > 0 ? OverlapResult::kTouching : OverlapResult::kNone;
     }
     FacePoints own;
-    FacePoints& points = manifold->store != nullptr ? *manifold->store->Next() : own;
+    FacePoints& points = manifold->NextFace(&own);
     for (int i = 0; i < count_; ++i) {
       const Candidate& c = candidates_[i];
       const double phi = c.height_b - c.height_a;

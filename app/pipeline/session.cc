@@ -275,7 +275,7 @@ RunOutcome Session::OutcomeOfSimulation() const {
   if (last_) {
     for (int i = 0; i < last_->num_states(); ++i) outcome.rollout.push_back(last_->state_at(i));
     for (int i = 1; last_->traced() && i < last_->num_states(); ++i) {
-      outcome.trace_table += TraceRow(last_->trace_at(i), last_->state_at(i).t, scene());
+      outcome.trace_table += FormatTraceRow(last_->trace_at(i), last_->state_at(i).t, scene());
     }
   } else {
     outcome.rollout.push_back(start_);

@@ -4,9 +4,9 @@
 #include "app/recording/json_values.h"
 
 namespace pregrasp {
-namespace {
 
-void AddTrace(const StepTrace& trace, const Scene& scene, nlohmann::ordered_json* value) {
+nlohmann::ordered_json TraceToJson(const StepTrace& trace, const Scene& scene) {
+  nlohmann::ordered_json value;
   nlohmann::ordered_json contacts = nlohmann::ordered_json::array();
   for (const ContactPoint& contact : trace.contacts) {
     contacts.push_back({{"a", scene.bodies[contact.body_a].name},
@@ -17,24 +17,17 @@ void AddTrace(const StepTrace& trace, const Scene& scene, nlohmann::ordered_json
                         {"gap", contact.phi},
                         {"v_slip_W", ToJson(contact.v_slip_W)}});
   }
-  (*value)["contacts"] = std::move(contacts);
-  (*value)["max_penetration"] = trace.max_penetration;
-  (*value)["kinetic_energy"] = trace.kinetic_energy;
-  (*value)["potential_energy"] = trace.potential_energy;
-}
-
-}  // namespace
-
-nlohmann::ordered_json TraceToJson(const StepTrace& trace, const Scene& scene) {
-  nlohmann::ordered_json value;
-  AddTrace(trace, scene, &value);
+  value["contacts"] = std::move(contacts);
+  value["max_penetration"] = trace.max_penetration;
+  value["kinetic_energy"] = trace.kinetic_energy;
+  value["potential_energy"] = trace.potential_energy;
   return value;
 }
 
-std::string TraceRow(const StepTrace& trace, double t, const Scene& scene) {
+std::string FormatTraceRow(const StepTrace& trace, double t, const Scene& scene) {
   nlohmann::ordered_json row;
   row["t"] = t;
-  AddTrace(trace, scene, &row);
+  row.update(TraceToJson(trace, scene));
   return FormatJson(row) + "\n";
 }
 

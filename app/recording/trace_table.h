@@ -13,6 +13,6 @@ namespace pregrasp {
 nlohmann::ordered_json TraceToJson(const StepTrace& trace, const Scene& scene);
 
 /// One line of trace.jsonl, with its line break: `t`, the end of the step [s], then the same.
-std::string TraceRow(const StepTrace& trace, double t, const Scene& scene);
+std::string FormatTraceRow(const StepTrace& trace, double t, const Scene& scene);
 
 }  // namespace pregrasp
