@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "app/pipeline/describe_plan.h"
+#include "app/pictures/describe_plan.h"
 #include "bindings/lua_planner.h"
 
 namespace pregrasp {

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "app/pipeline/forces.h"
+#include "app/pictures/forces.h"
 #include "bindings/lua_session.h"
 
 namespace pregrasp {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/pipeline/planner_settings.h"
+#include "app/job/planner_settings.h"
 #include "bindings/value.h"
 
 namespace pregrasp {

@@ -1,4 +1,4 @@
-#include "app/pipeline/check.h"
+#include "app/job/check.h"
 
 #include <fmt/core.h>
 
@@ -11,7 +11,7 @@
 #include "app/commands/commands.h"
 #include "app/core/text.h"
 #include "app/core/thread_pool.h"
-#include "app/pipeline/start_verdict.h"
+#include "app/job/start_verdict.h"
 #include "bindings/scene_file.h"
 
 namespace pregrasp {

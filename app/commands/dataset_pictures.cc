@@ -12,7 +12,7 @@
 #include "app/commands/progress.h"
 #include "app/core/error.h"
 #include "app/geometry/tessellate.h"
-#include "app/pipeline/camera.h"
+#include "app/pictures/camera.h"
 #include "app/training/dataset_run.h"
 #include "render/hand_bodies.h"
 #include "render/palette.h"

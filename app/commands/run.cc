@@ -12,8 +12,8 @@
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
 #include "app/core/interrupt.h"
-#include "app/pipeline/planner_settings.h"
-#include "app/pipeline/start_verdict.h"
+#include "app/job/planner_settings.h"
+#include "app/job/start_verdict.h"
 #include "bindings/scene_file.h"
 #include "bindings/script.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/picture.h"
+#include "app/pictures/picture.h"
 #include "app/recording/run_directory.h"
 #include "render/renderer.h"
 

@@ -6,8 +6,8 @@
 
 #include "app/core/check.h"
 #include "app/hand/hand_shapes.h"
-#include "app/pipeline/describe_plan.h"
-#include "app/pipeline/planner_settings.h"
+#include "app/pictures/describe_plan.h"
+#include "app/job/planner_settings.h"
 #include "app/recording/motion_table.h"
 #include "render/palette.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/grasp/start_certificate.h"
-#include "app/pipeline/planner.h"
+#include "app/job/planner.h"
 #include "app/pipeline/session.h"
 
 namespace pregrasp {

@@ -10,7 +10,7 @@
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "app/geometry/overlap.h"
-#include "app/pipeline/describe.h"
+#include "app/pictures/describe.h"
 #include "app/recording/trace_table.h"
 
 namespace pregrasp {

@@ -13,9 +13,9 @@
 #include "app/core/thread_pool.h"
 #include "app/geometry/signed_distance.h"
 #include "app/pipeline/journal.h"
-#include "app/pipeline/motion_measure.h"
-#include "app/pipeline/picture.h"
-#include "app/pipeline/simulation.h"
+#include "app/job/motion_measure.h"
+#include "app/pictures/picture.h"
+#include "app/job/simulation.h"
 
 namespace pregrasp {
 

@@ -2,7 +2,7 @@
 
 #include "app/core/error.h"
 #include "app/recording/checked_file.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 #include "app/recording/manifest.h"
 #include "app/recording/run_directory.h"
 

@@ -7,7 +7,7 @@
 #include "app/core/error.h"
 #include "app/core/sha256.h"
 #include "app/recording/checked_file.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 
 namespace pregrasp {
 namespace {

@@ -17,7 +17,7 @@
 #include "app/core/check.h"
 #include "app/core/error.h"
 #include "app/recording/gzip_file.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 
 namespace pregrasp {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/core/sha256.h"
 #include "app/recording/build_info.h"
 #include "app/recording/checked_file.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 #include "app/recording/manifest.h"
 #include "app/recording/partial_directory.h"
 #include "app/recording/rawlog.h"

@@ -7,9 +7,9 @@
 
 #include "app/core/error.h"
 #include "app/recording/checked_file.h"
-#include "app/recording/json_reader.h"
-#include "app/recording/json_text.h"
-#include "app/recording/json_values.h"
+#include "app/core/json_reader.h"
+#include "app/core/json_text.h"
+#include "app/core/json_values.h"
 #include "app/recording/obj_file.h"
 
 namespace pregrasp {

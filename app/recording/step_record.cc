@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "app/recording/json_reader.h"
-#include "app/recording/json_values.h"
+#include "app/core/json_reader.h"
+#include "app/core/json_values.h"
 
 namespace pregrasp {
 

@@ -1,7 +1,7 @@
 #include "app/recording/trace_table.h"
 
-#include "app/recording/json_text.h"
-#include "app/recording/json_values.h"
+#include "app/core/json_text.h"
+#include "app/core/json_values.h"
 
 namespace pregrasp {
 

@@ -1,4 +1,4 @@
-#include "app/pipeline/check.h"
+#include "app/job/check.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "app/pipeline/picture.h"
+#include "app/pictures/picture.h"
 
 #include <gtest/gtest.h>
 
 #include "app/core/error.h"
 #include "app/geometry/tessellate.h"
-#include "app/pipeline/camera.h"
-#include "app/pipeline/describe.h"
-#include "app/pipeline/simulation.h"
+#include "app/pictures/camera.h"
+#include "app/pictures/describe.h"
+#include "app/job/simulation.h"
 #include "tests/pipeline/fixture.h"
 
 namespace pregrasp {

@@ -1,4 +1,4 @@
-#include "app/pipeline/planner_settings.h"
+#include "app/job/planner_settings.h"
 
 #include <gtest/gtest.h>
 

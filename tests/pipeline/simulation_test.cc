@@ -1,11 +1,11 @@
-#include "app/pipeline/simulation.h"
+#include "app/job/simulation.h"
 
 #include <gtest/gtest.h>
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
-#include "app/pipeline/forces.h"
-#include "app/pipeline/motion_measure.h"
+#include "app/pictures/forces.h"
+#include "app/job/motion_measure.h"
 #include "tests/pipeline/fixture.h"
 
 namespace pregrasp {

@@ -4,7 +4,7 @@
 
 #include "app/core/error.h"
 #include "app/core/sha256.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 #include "tests/recording/sample_run.h"
 
 namespace pregrasp {

@@ -7,7 +7,7 @@
 
 #include "app/core/error.h"
 #include "app/core/sha256.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 #include "app/recording/manifest.h"
 #include "app/recording/scene_file.h"
 #include "tests/recording/sample_run.h"

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "app/core/error.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 #include "app/recording/obj_file.h"
 #include "tests/recording/sample_run.h"
 

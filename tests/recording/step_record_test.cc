@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/core/error.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 #include "tests/recording/sample_run.h"
 
 namespace pregrasp {

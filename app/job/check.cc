@@ -1,4 +1,4 @@
-#include "app/pipeline/check.h"
+#include "app/job/check.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "app/geometry/mass_properties.h"
 #include "app/geometry/overlap.h"
 #include "app/geometry/tessellate.h"
-#include "app/pipeline/motion_measure.h"
+#include "app/job/motion_measure.h"
 
 namespace pregrasp {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/pipeline/camera.h"
+#include "app/pictures/camera.h"
 
 #include <cmath>
 

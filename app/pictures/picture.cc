@@ -1,4 +1,4 @@
-#include "app/pipeline/picture.h"
+#include "app/pictures/picture.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "app/geometry/tessellate.h"
-#include "app/pipeline/camera.h"
-#include "app/pipeline/finger_stub.h"
-#include "app/pipeline/forces.h"
-#include "app/pipeline/motion_measure.h"
+#include "app/pictures/camera.h"
+#include "app/pictures/finger_stub.h"
+#include "app/pictures/forces.h"
+#include "app/job/motion_measure.h"
 #include "render/hand_bodies.h"
 #include "render/palette.h"
 

@@ -1,4 +1,4 @@
-#include "app/pipeline/describe_plan.h"
+#include "app/pictures/describe_plan.h"
 
 #include <fmt/format.h>
 

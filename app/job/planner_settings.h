@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "app/pipeline/planner.h"
+#include "app/job/planner.h"
 #include "app/scene/settings.h"
 
 namespace pregrasp {

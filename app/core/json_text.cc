@@ -1,4 +1,4 @@
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/pipeline/planner.h"
+#include "app/job/planner.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "app/pipeline/simulation.h"
+#include "app/job/simulation.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/pipeline/motion_measure.h"
+#include "app/job/motion_measure.h"
 
 #include <cmath>
 

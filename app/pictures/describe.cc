@@ -1,12 +1,12 @@
-#include "app/pipeline/describe.h"
+#include "app/pictures/describe.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/pipeline/forces.h"
-#include "app/pipeline/motion_measure.h"
+#include "app/pictures/forces.h"
+#include "app/job/motion_measure.h"
 
 namespace pregrasp {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/planner.h"
+#include "app/job/planner.h"
 
 namespace pregrasp {
 

@@ -1,11 +1,11 @@
-#include "app/recording/json_reader.h"
+#include "app/core/json_reader.h"
 
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "app/core/error.h"
-#include "app/recording/json_text.h"
+#include "app/core/json_text.h"
 
 namespace pregrasp {
 

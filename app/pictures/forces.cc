@@ -1,4 +1,4 @@
-#include "app/pipeline/forces.h"
+#include "app/pictures/forces.h"
 
 #include <algorithm>
 #include <map>

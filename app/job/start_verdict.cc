@@ -1,4 +1,4 @@
-#include "app/pipeline/start_verdict.h"
+#include "app/job/start_verdict.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/pipeline/finger_stub.h"
+#include "app/pictures/finger_stub.h"
 
 #include <array>
 #include <cmath>
