@@ -28,7 +28,7 @@ int Run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   app.set_help_flag("-h,--help", "This text");
   app.footer("Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of ours.");
-  const Command command(app);
+  const Subcommand command(app);
   Action action;
   AddCheck(command, action);
   AddDataset(command, action);
@@ -36,6 +36,7 @@ int Run(int argc, char** argv) {
   AddRepl(command, action);
   AddRun(command, action);
   AddScript(command, action);
+  AddShow(command, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -40,12 +40,12 @@ RecordWriter BeginEvent(lua_State* L, const char* kind, const WorldState& state,
 }
 
 // Whether the predicate on top stops at physics step `index` of the past.
-bool StopsAtStep(lua_State* L, const LuaSimulation& sim, int index) {
-  const WorldState& state = sim.simulation->state_at(index);
+bool StopsAtStep(lua_State* L, const std::vector<Body>& bodies, const Simulation& simulation,
+                 int index) {
+  const WorldState& state = simulation.state_at(index);
   BeginEvent(L, "step", state, index).Set("speed", state.bodies[0].v_WB.norm());
   if (Ask(L)) return true;
-  const std::vector<Body>& bodies = sim.session->scene().bodies;
-  for (const ContactPoint& contact : sim.simulation->contacts_at(index)) {
+  for (const ContactPoint& contact : simulation.contacts_at(index)) {
     BeginEvent(L, "contact", state, index)
         .Set("a", bodies[contact.body_a].name)
         .Set("b", bodies[contact.body_b].name)
@@ -91,15 +91,39 @@ void SessionBreakWhen(lua_State* L, const std::shared_ptr<Session>& session,
   if (predicate.reference != LUA_NOREF) predicates[session.get()] = {session, predicate.reference};
 }
 
-bool StopWhereAsked(lua_State* L, const LuaSimulation& sim, int first) {
-  if (!PushPredicate(L, sim.session)) return false;
-  const int count = sim.simulation->num_states();
+bool HasPredicate(lua_State* L, const std::shared_ptr<Session>& session) {
+  const bool has = PushPredicate(L, session);
+  if (has) lua_pop(L, 1);
+  return has;
+}
+
+void RequireOutsidePredicate(lua_State* L, const std::shared_ptr<Session>& session) {
+  const auto& asking = ScriptContext::Of(L).asking;
+  if (std::find(asking.begin(), asking.end(), session.get()) != asking.end()) {
+    throw InputError("", "", "simulations to stand still while break_when's function is asked",
+                     "a call that moves one");
+  }
+}
+
+std::optional<int> FindStop(lua_State* L, const std::shared_ptr<Session>& session,
+                            const Simulation& simulation, int first) {
+  // The session is being asked about until this ends, however it does.
+  struct Asking {
+    std::vector<const Session*>& list;
+    explicit Asking(std::vector<const Session*>& sessions, const Session* session)
+        : list(sessions) {
+      list.push_back(session);
+    }
+    ~Asking() { list.pop_back(); }
+  };
+  const Asking asking(ScriptContext::Of(L).asking, session.get());
+  if (!PushPredicate(L, session)) return std::nullopt;
+  const int count = simulation.num_states();
   int index = first;
-  while (index < count && !StopsAtStep(L, sim, index)) ++index;
+  while (index < count && !StopsAtStep(L, session->scene().bodies, simulation, index)) ++index;
   lua_pop(L, 1);
-  if (index == count) return false;
-  sim.session->Shorten(sim.simulation, count - 1 - index);
-  return true;
+  if (index == count) return std::nullopt;
+  return index;
 }
 
 std::vector<const Schema*> EventSchemas() { return {&kEvent}; }

@@ -28,7 +28,7 @@ Pushed PushCloud(lua_State* L, Session& session, int points) {
 }
 
 Pushed PushDistance(lua_State* L, Session& session, const Vector3& p_W) {
-  const DistanceSample sample = session.environment().Calc(p_W);
+  const DistanceSample sample = session.job().environment().Calc(p_W);
   RecordWriter(L, kDistance).Set("phi", sample.phi).Set("nhat", sample.nhat);
   return {1};
 }

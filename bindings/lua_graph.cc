@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "app/pictures/describe_plan.h"
+#include "app/pictures/words.h"
 #include "bindings/lua_planner.h"
 
 namespace pregrasp {
@@ -71,53 +71,36 @@ void RequireScores(const ContactGraph& graph) {
 
 // Methods of a graph.
 
-void Advance(lua_State* L, LuaGraph& graph, ContactGraph next,
-             void (PlanRecord::*add)(const ContactGraph&)) {
-  auto step =
-      graph.planning->Record(graph.config, [&](PlanRecord& record) { (record.*add)(next); });
-  graph.past.push_back(std::make_shared<const Moment<ContactGraph>>(
-      Moment<ContactGraph>{std::move(next), std::move(step)}));
+void GraphScore(lua_State* L, LuaGraph& graph) {
+  graph.Do(Verb::kScore);
   CountMemory(L, kGraphKib);
 }
 
-void GraphScore(lua_State* L, LuaGraph& graph) {
-  if (graph.graph().stage() != GraphStage::kMeshed) {
-    throw InputError("", "", "a graph without scores", "one that has them");
-  }
-  ContactGraph next = graph.graph();
-  graph.planning->record.Time("graph", [&] { graph.planning->planner.ScoreGraph(next); });
-  Advance(L, graph, std::move(next), &PlanRecord::AddScores);
+bool IsConnected(const LuaGraph& graph) {
+  return graph.graph()->stage() == GraphStage::kConnected;
 }
 
 bool GraphPruneStep(lua_State* L, LuaGraph& graph, const std::optional<int>& nodes) {
-  RequireScores(graph.graph());
+  RequireScores(*graph.graph());
   if (nodes && *nodes < 1) {
     throw InputError("", "nodes", "a whole number from 1", std::to_string(*nodes));
   }
-  ContactGraph next = graph.graph();
-  if (!next.PruneStep(nodes.value_or(std::numeric_limits<int>::max()))) return false;
-  Advance(L, graph, std::move(next), &PlanRecord::AddPruning);
+  if (IsConnected(graph)) return false;
+  graph.Do(Verb::kPrune, nodes ? nlohmann::json{{"nodes", *nodes}} : nlohmann::json::object());
+  CountMemory(L, kGraphKib);
   return true;
 }
 
 void GraphPrune(lua_State* L, LuaGraph& graph, const PruneOptions& options) {
-  RequireScores(graph.graph());
-  if (!options.fields.empty()) {
-    PlannerConfig config = graph.config;
-    options.ApplyTo(config);
-    ContactGraph next = graph.graph();
-    next.SetTopPercent(config.graph.top_percent);
-    graph.config = config;
-    // The same moment with another setting: not one to go back to.
-    graph.past.back() = std::make_shared<const Moment<ContactGraph>>(
-        Moment<ContactGraph>{std::move(next), graph.past.back()->step});
-  }
-  while (GraphPruneStep(L, graph, std::nullopt)) {
-  }
+  RequireScores(*graph.graph());
+  nlohmann::json command = nlohmann::json::object();
+  if (!options.fields.empty()) command["settings"] = options.ToSettings();
+  graph.node = &PruneAll(graph.session->timeline(), *graph.node, std::move(command));
+  CountMemory(L, 3 * kGraphKib);
 }
 
 void GraphBack(LuaGraph& graph, const std::optional<int>& steps) {
-  GoBack(graph.past, steps.value_or(1));
+  graph.Back(steps.value_or(1), graph.first);
 }
 
 Pushed GraphFork(lua_State* L, LuaGraph& graph) {
@@ -126,18 +109,18 @@ Pushed GraphFork(lua_State* L, LuaGraph& graph) {
 }
 
 Pushed GraphWhy(lua_State* L, LuaGraph& graph, int id) {
-  PushObject(L, std::make_shared<LuaReason>(LuaReason{graph.graph().Why(id)}));
+  PushObject(L, std::make_shared<LuaReason>(LuaReason{graph.graph()->Why(id)}));
   return {1};
 }
 
 Pushed GraphNode(lua_State* L, LuaGraph& graph, int id) {
-  PushNode(L, graph.graph().Why(id).node);
+  PushNode(L, graph.graph()->Why(id).node);
   return {1};
 }
 
 Pushed GraphTop(lua_State* L, LuaGraph& graph, const std::optional<int>& count) {
-  RequireScores(graph.graph());
-  std::vector<ContactNode> nodes = graph.graph().nodes();
+  RequireScores(*graph.graph());
+  std::vector<ContactNode> nodes = graph.graph()->nodes();
   std::sort(nodes.begin(), nodes.end(),
             [](const ContactNode& a, const ContactNode& b) { return a.rank_c < b.rank_c; });
   const int shown = std::clamp(count.value_or(10), 0, static_cast<int>(nodes.size()));
@@ -150,63 +133,63 @@ Pushed GraphTop(lua_State* L, LuaGraph& graph, const std::optional<int>& count) 
 }
 
 std::vector<int> GraphNeighbors(LuaGraph& graph, int id) {
-  if (graph.graph().stage() != GraphStage::kConnected) {
+  if (graph.graph()->stage() != GraphStage::kConnected) {
     throw InputError("", "", "a connected graph", "one before prune()");
   }
-  return graph.graph().Why(id).node.kept ? graph.graph().neighbors(id) : std::vector<int>{};
+  return graph.graph()->Why(id).node.kept ? graph.graph()->neighbors(id) : std::vector<int>{};
 }
 
 Pushed GraphPaths(lua_State* L, LuaGraph& graph, const PathsOptions& options) {
-  PlannerConfig config = graph.config;
-  options.ApplyTo(config);
-  PushObject(L, std::make_shared<LuaPaths>(LuaPaths{graph.planning,
-                                                    config,
-                                                    graph.past.back(),
-                                                    PathSearch(graph.graph(), config.stages),
-                                                    {},
-                                                    0}));
+  if (!IsConnected(graph)) {
+    throw InputError("", "paths", "a graph that has been pruned", "one that has not");
+  }
+  LuaPaths paths{{graph.session, graph.node, options.ToSettings()}};
+  const auto given = paths.settings.find("paths.stages");
+  paths.stages = given != paths.settings.end() ? given->get<int>() : graph.state()->config.stages;
+  graph.state()->paths->Count(paths.stages);  // refuses what cannot be
+  PushObject(L, std::make_shared<LuaPaths>(std::move(paths)));
   CountMemory(L, 2 * kGraphKib);
   return {1};
 }
 
 void GraphShot(lua_State* L, LuaGraph& graph, const ShotOptions& options) {
-  ShootStep(L, *graph.planning, graph.past.back()->step, options);
+  TakeShot(L, *graph.session, *graph.node, options);
 }
 
 // Properties of a graph.
 
-std::string GraphStageName(LuaGraph& graph) { return StageName(graph.graph().stage()); }
-std::string GraphStepId(LuaGraph& graph) { return StepId(graph.past.back()->step); }
-int GraphTriangles(LuaGraph& graph) { return graph.graph().num_triangles(); }
-int GraphNodes(LuaGraph& graph) { return static_cast<int>(graph.graph().nodes().size()); }
+std::string GraphStageName(LuaGraph& graph) { return StageName(graph.graph()->stage()); }
+std::string GraphStepId(LuaGraph& graph) { return graph.step_id(); }
+int GraphTriangles(LuaGraph& graph) { return graph.graph()->num_triangles(); }
+int GraphNodes(LuaGraph& graph) { return static_cast<int>(graph.graph()->nodes().size()); }
 int GraphEdges(LuaGraph& graph) {
-  return graph.graph().stage() == GraphStage::kConnected ? graph.graph().num_edges() : 0;
+  return graph.graph()->stage() == GraphStage::kConnected ? graph.graph()->num_edges() : 0;
 }
-double GraphTopPercent(LuaGraph& graph) { return graph.graph().config().top_percent; }
+double GraphTopPercent(LuaGraph& graph) { return graph.graph()->config().top_percent; }
 std::vector<int> GraphKept(LuaGraph& graph) {
   std::vector<int> kept;
-  for (const ContactNode& node : graph.graph().nodes()) {
+  for (const ContactNode& node : graph.graph()->nodes()) {
     if (node.kept) kept.push_back(node.id);
   }
   return kept;
 }
 std::vector<int> GraphInitial(LuaGraph& graph) {
   std::vector<int> initial;
-  for (const ContactNode& node : graph.graph().nodes()) {
+  for (const ContactNode& node : graph.graph()->nodes()) {
     if (node.initial) initial.push_back(node.id);
   }
   return initial;
 }
 Pushed GraphMesh(lua_State* L, LuaGraph& graph) {
-  PushMesh(L, graph.graph().mesh());
+  PushMesh(L, graph.graph()->mesh());
   return {1};
 }
 
 int GraphToString(lua_State* L) {
   const auto graph = FindObject<LuaGraph>(L, 1);
   const std::string text =
-      graph ? fmt::format("Graph({}, {} nodes)", StageName(graph->graph().stage()),
-                          graph->graph().nodes().size())
+      graph ? fmt::format("Graph({}, {} nodes)", StageName(graph->graph()->stage()),
+                          graph->graph()->nodes().size())
             : "Graph";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
@@ -236,32 +219,23 @@ int ReasonToString(lua_State* L) {
 
 // Paths.
 
-// Finds paths until there are `count`, or all.
-void FindPaths(LuaPaths& paths, std::size_t count) {
-  ContactPath path;
-  while (paths.found.size() < count && paths.search.Next(&path)) paths.found.push_back(path);
-}
-
-void PushPath(lua_State* L, const LuaPaths& paths, std::size_t i,
-              std::shared_ptr<const JournalStep> step = nullptr) {
-  PushObject(L, std::make_shared<LuaPath>(LuaPath{paths.planning, paths.config, paths.graph,
-                                                  paths.found[i], std::move(step)}));
-}
-
-std::shared_ptr<const JournalStep> RecordPath(Planning& planning, const PlannerConfig& config,
-                                              const ContactGraph& graph, const ContactPath& path) {
-  return planning.Record(config, [&](PlanRecord& record) { record.AddPath(graph, path); });
+// The path of a rank; null beyond the last one.
+std::shared_ptr<LuaPath> FindPath(const LuaPaths& paths, int rank) {
+  auto found = paths.state()->paths->Find(paths.stages, rank);
+  if (!found) return nullptr;
+  return std::make_shared<LuaPath>(
+      LuaPath{{paths.session, paths.node, paths.settings}, std::move(found)});
 }
 
 Pushed PathsNext(lua_State* L, LuaPaths& paths) {
-  FindPaths(paths, paths.next + 1);
-  if (paths.next == paths.found.size()) {
+  const std::shared_ptr<LuaPath> path = FindPath(paths, paths.next);
+  if (!path) {
     lua_pushnil(L);
     return {1};
   }
-  const std::size_t i = paths.next++;
-  PushPath(L, paths, i,
-           RecordPath(*paths.planning, paths.config, paths.graph->state, paths.found[i]));
+  path->Record();
+  ++paths.next;
+  PushObject(L, path);
   return {1};
 }
 
@@ -269,12 +243,12 @@ Pushed PathsTop(lua_State* L, LuaPaths& paths, int count) {
   if (count < 0 || count > kMostPaths) {
     throw InputError("", "count", "0 to 100000", std::to_string(count));
   }
-  FindPaths(paths, static_cast<std::size_t>(count));
-  const std::size_t shown = std::min(paths.found.size(), static_cast<std::size_t>(count));
-  lua_createtable(L, static_cast<int>(shown), 0);
-  for (std::size_t i = 0; i < shown; ++i) {
-    PushPath(L, paths, i);
-    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  lua_createtable(L, 0, 0);
+  for (int rank = 1; rank <= count; ++rank) {
+    const std::shared_ptr<LuaPath> path = FindPath(paths, rank);
+    if (!path) break;
+    PushObject(L, path);
+    lua_rawseti(L, -2, rank);
   }
   return {1};
 }
@@ -284,22 +258,17 @@ Pushed PathsItem(lua_State* L, LuaPaths& paths, int number) {
   if (number < 1 || number > kMostPaths) {
     throw InputError("", "number", "1 to 100000", std::to_string(number));
   }
-  FindPaths(paths, static_cast<std::size_t>(number));
-  if (static_cast<std::size_t>(number) > paths.found.size()) {
-    lua_pushnil(L);
-  } else {
-    PushPath(L, paths, static_cast<std::size_t>(number) - 1);
-  }
+  const std::shared_ptr<LuaPath> path = FindPath(paths, number);
+  path ? PushObject(L, path) : lua_pushnil(L);
   return {1};
 }
 
-double PathsCount(LuaPaths& paths) { return paths.search.num_paths(); }
-int PathsStages(LuaPaths& paths) { return paths.config.stages; }
+double PathsCount(LuaPaths& paths) { return paths.state()->paths->Count(paths.stages); }
+int PathsStages(LuaPaths& paths) { return paths.stages; }
 
 int PathsToString(lua_State* L) {
   const auto paths = FindObject<LuaPaths>(L, 1);
-  const std::string text = paths ? fmt::format("Paths({:.0f} of {} stages)",
-                                               paths->search.num_paths(), paths->config.stages)
+  const std::string text = paths ? fmt::format("Paths({:.0f} of {} stages)", PathsCount(*paths), paths->stages)
                                  : "Paths";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
@@ -308,32 +277,31 @@ int PathsToString(lua_State* L) {
 // One path.
 
 void PathShot(lua_State* L, LuaPath& path, const ShotOptions& options) {
-  if (!path.step) {
-    path.step = RecordPath(*path.planning, path.config, path.graph->state, path.path);
-  }
-  ShootStep(L, *path.planning, path.step, options);
+  path.Record();
+  TakeShot(L, *path.cursor.session, *path.cursor.node, options);
 }
 
-int PathRank(LuaPath& path) { return path.path.rank; }
-double PathScore(LuaPath& path) { return path.path.score; }
-std::vector<double> PathTerms(LuaPath& path) { return path.path.terms; }
-std::string PathStepId(LuaPath& path) { return StepId(path.step); }
+int PathRank(LuaPath& path) { return path.path->rank; }
+double PathScore(LuaPath& path) { return path.path->score; }
+std::vector<double> PathTerms(LuaPath& path) { return path.path->terms; }
+// "" before it is a step
+std::string PathStepId(LuaPath& path) { return path.recorded() ? path.cursor.step_id() : ""; }
 Pushed PathNodes(lua_State* L, LuaPath& path) {
-  lua_createtable(L, static_cast<int>(path.path.nodes.size()), 0);
-  for (std::size_t i = 0; i < path.path.nodes.size(); ++i) {
-    PushNode(L, path.graph->state.nodes().at(static_cast<std::size_t>(path.path.nodes[i])));
+  lua_createtable(L, static_cast<int>(path.path->nodes.size()), 0);
+  for (std::size_t i = 0; i < path.path->nodes.size(); ++i) {
+    PushNode(L, path.cursor.state()->graph->nodes().at(static_cast<std::size_t>(path.path->nodes[i])));
     lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
   }
   return {1};
 }
 Pushed PathSiblings(lua_State* L, LuaPath& path) {
-  const std::vector<ContactPath> siblings = FindSiblings(path.graph->state, path.path, kSiblings);
+  const std::vector<ContactPath> siblings = FindSiblings(*path.cursor.state()->graph, *path.path, kSiblings);
   lua_createtable(L, static_cast<int>(siblings.size()), 0);
   for (std::size_t i = 0; i < siblings.size(); ++i) {
     RecordWriter(L, kSibling)
         .Set("nodes", siblings[i].nodes)
         .Set("score", siblings[i].score)
-        .Set("behind", path.path.score - siblings[i].score);
+        .Set("behind", path.path->score - siblings[i].score);
     lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
   }
   return {1};
@@ -344,9 +312,9 @@ int PathToString(lua_State* L) {
   std::string text = "Path";
   if (path) {
     std::string nodes;
-    for (const int id : path->path.nodes)
+    for (const int id : path->path->nodes)
       nodes += fmt::format("{}{}", nodes.empty() ? "" : " > ", id);
-    text = fmt::format("Path(rank {}, {}, score {:.3f})", path->path.rank, nodes, path->path.score);
+    text = fmt::format("Path(rank {}, {}, score {:.3f})", path->path->rank, nodes, path->path->score);
   }
   lua_pushlstring(L, text.data(), text.size());
   return 1;
@@ -354,18 +322,18 @@ int PathToString(lua_State* L) {
 
 }  // namespace
 
+void LuaPath::Record() {
+  if (!recorded()) cursor.Do(Verb::kPath, {{"rank", path->rank}});
+}
+
 Pushed SessionGraph(lua_State* L, const std::shared_ptr<Session>& session,
                     const GraphOptions& options) {
-  PlannerConfig config;
-  options.ApplyTo(config);
-  config.Validate();
-  auto planning = Planning::Of(L, session, config);
-  const Planner planner = planning->planner.WithConfig(config);
-  ContactGraph graph = planning->record.Time(
-      "geometry", [&] { return planner.BuildGraph(config.mesh, config.graph); });
-  const auto object = std::make_shared<LuaGraph>(LuaGraph{planning, config, {}});
-  Advance(L, *object, std::move(graph), &PlanRecord::AddMesh);
-  PushObject(L, object);
+  constexpr int kPlanningKib = 20000;
+  CountMemory(L, kPlanningKib);
+  LuaGraph graph{{session, &session->start(), options.ToSettings()}};
+  graph.Do(Verb::kMesh);
+  graph.first = graph.node;
+  PushObject(L, std::make_shared<LuaGraph>(std::move(graph)));
   return {1};
 }
 

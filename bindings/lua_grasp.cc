@@ -113,7 +113,7 @@ void TurnNormalsOutward(const Session* session, std::vector<IkContact>& contacts
     for (IkContact& contact : contacts) contact.nhat_W = -contact.nhat_W;
     return;
   }
-  const RigidTransform X_WO = session->start().bodies.front().X_WB();
+  const RigidTransform X_WO = session->GetStart().bodies.front().X_WB();
   const SignedDistance object(session->scene().object().shape);
   for (IkContact& contact : contacts) {
     Vector3 nhat_O;
@@ -134,7 +134,7 @@ Pushed Ik(lua_State* L, IkOptions& options) {
   IkResult result;
   if (options.session) {
     const Session& session = *options.session;
-    problem.X_WB = session.world().GetPoses(session.start());
+    problem.X_WB = session.world().GetPoses(session.GetStart());
     result = IkSolver(hand, session.scene()).Solve(config, problem, rng);
   } else {
     result = IkSolver(hand).Solve(config, problem, rng);

@@ -6,7 +6,7 @@
 namespace pregrasp {
 namespace {
 
-const Schema kLift{"Lift", {"held", "height", "shift", "turn_deg", "slip_mm", "direction_W"}};
+const Schema kLift{"Lift", {"held", "reasons", "height", "shift_mm", "turn_deg", "slip_mm", "direction_W", "step_id"}};
 
 constexpr int kGraspKib = 20;
 
@@ -17,11 +17,13 @@ Pushed GraspsAll(lua_State* L, LuaGrasps& grasps) {
   return PushIpairs(L);
 }
 
+// The most promising; nil where none is feasible.
 Pushed GraspsBest(lua_State* L, LuaGrasps& grasps) {
-  if (grasps.all->feasible.empty()) {
+  const std::vector<int> order = OrderGrasps(*grasps.state());
+  if (order.empty()) {
     lua_pushnil(L);
   } else {
-    PushObject(L, grasps.grasps[static_cast<std::size_t>(grasps.all->feasible.front())]);
+    PushObject(L, grasps.grasps[static_cast<std::size_t>(order.front()) - 1]);
   }
   return {1};
 }
@@ -36,9 +38,15 @@ Pushed GraspsItem(lua_State* L, LuaGrasps& grasps, int number) {
 }
 
 int GraspsCount(LuaGrasps& grasps) { return static_cast<int>(grasps.grasps.size()); }
-int GraspsFeasible(LuaGrasps& grasps) { return static_cast<int>(grasps.all->feasible.size()); }
-double GraspsSuccess(LuaGrasps& grasps) { return grasps.all->r_suc(); }
-double GraspsRawSuccess(LuaGrasps& grasps) { return grasps.all->r_suc_raw(); }
+int GraspsFeasible(LuaGrasps& grasps) { return grasps.node->progress.feasible; }
+int GraspsLifting(LuaGrasps& grasps) { return grasps.node->progress.lifted; }
+double GraspsSuccess(LuaGrasps& grasps) { return grasps.state()->grasps->r_suc(); }
+double GraspsRawSuccess(LuaGrasps& grasps) { return grasps.state()->grasps->r_suc_raw(); }
+double GraspsLiftSuccess(LuaGrasps& grasps) {
+  return grasps.grasps.empty() ? 0.0
+                               : static_cast<double>(grasps.node->progress.lifted) /
+                                     static_cast<double>(grasps.grasps.size());
+}
 
 int GraspsToString(lua_State* L) {
   const auto grasps = FindObject<LuaGrasps>(L, 1);
@@ -52,60 +60,64 @@ int GraspsToString(lua_State* L) {
 // One grasp.
 
 void GraspShot(lua_State* L, LuaGrasp& grasp, const ShotOptions& options) {
-  ShootStep(L, *grasp.trajectory->planning, grasp.step, options);
+  TakeShot(L, *grasp.all.session, *grasp.step, options);
 }
 
-bool GraspFeasible(LuaGrasp& grasp) { return grasp.grasp().feasible(); }
-std::string GraspReason(LuaGrasp& grasp) { return GraspStatusName(grasp.grasp().result.status); }
-std::string GraspRawReason(LuaGrasp& grasp) { return GraspStatusName(grasp.grasp().raw.status); }
-std::string GraspText(LuaGrasp& grasp) {
-  return Explain(grasp.grasp().result, grasp.trajectory->planning->planner.grasp_world());
-}
-int GraspSample(LuaGrasp& grasp) { return grasp.sample + 1; }
-double GraspMoved(LuaGrasp& grasp) { return 1e3 * grasp.grasp().moved; }
-int GraspRefinements(LuaGrasp& grasp) { return grasp.grasp().refinements; }
-std::string GraspStepId(LuaGrasp& grasp) { return StepId(grasp.step); }
+bool GraspFeasible(LuaGrasp& grasp) { return grasp.facts().feasible; }
+std::string GraspReason(LuaGrasp& grasp) { return grasp.facts().status; }
+std::string GraspRawReason(LuaGrasp& grasp) { return grasp.facts().raw_status; }
+std::string GraspText(LuaGrasp& grasp) { return grasp.facts().sentence; }
+std::string GraspSource(LuaGrasp& grasp) { return grasp.facts().source; }
+int GraspSample(LuaGrasp& grasp) { return grasp.number(); }
+double GraspMoved(LuaGrasp& grasp) { return grasp.facts().moved_mm; }
+int GraspRefinements(LuaGrasp& grasp) { return grasp.facts().refinements; }
+std::string GraspStepId(LuaGrasp& grasp) { return grasp.step->id(); }
 std::vector<std::string> GraspFingers(LuaGrasp& grasp) {
   std::vector<std::string> fingers;
-  for (const GraspContact& contact : grasp.grasp().result.contacts) {
+  for (const GraspContactFacts& contact : grasp.facts().contacts) {
     fingers.emplace_back(FingerName(contact.finger));
   }
   return fingers;
 }
 Pushed GraspContacts(lua_State* L, LuaGrasp& grasp) {
-  PushGraspContacts(L, grasp.grasp().result.contacts);
+  PushGraspContacts(L, grasp.grasp(*grasp.all.state()).result.contacts);
   return {1};
 }
 // nil where it was not tested
 Pushed GraspWrench(lua_State* L, LuaGrasp& grasp) {
-  const auto& wrench = grasp.grasp().result.wrench;
+  const auto state = grasp.all.state();
+  const auto& wrench = grasp.grasp(*state).result.wrench;
   wrench ? PushWrench(L, *wrench) : lua_pushnil(L);
   return {1};
 }
 Pushed GraspIk(lua_State* L, LuaGrasp& grasp) {
-  const auto& kinematics = grasp.grasp().result.kinematics;
+  const auto state = grasp.all.state();
+  const auto& kinematics = grasp.grasp(*state).result.kinematics;
   kinematics ? PushIk(L, kinematics->ik) : lua_pushnil(L);
   return {1};
 }
+// nil where it is not feasible
 Pushed GraspLift(lua_State* L, LuaGrasp& grasp) {
-  if (!grasp.lift()) {
+  if (grasp.lift == nullptr) {
     lua_pushnil(L);
     return {1};
   }
+  const auto& lift = std::get<LiftFacts>(grasp.lift->facts.details);
   RecordWriter(L, kLift)
-      .Set("held", grasp.lift()->held)
-      .Set("height", grasp.lift()->height)
-      .Set("shift", grasp.lift()->shift)
-      .Set("turn_deg", grasp.lift()->turn_deg)
-      .Set("slip_mm", 1e3 * grasp.lift()->slip)
-      .Set("direction_W", grasp.lift()->direction_W);
+      .Set("held", lift.held)
+      .Set("reasons", lift.reasons)
+      .Set("height", lift.height_m)
+      .Set("shift_mm", lift.shift_mm)
+      .Set("turn_deg", lift.turn_deg)
+      .Set("slip_mm", lift.slip_mm)
+      .Set("direction_W", lift.direction_W)
+      .Set("step_id", grasp.lift->id());
   return {1};
 }
 
 int GraspToString(lua_State* L) {
   const auto grasp = FindObject<LuaGrasp>(L, 1);
-  const std::string text = grasp ? fmt::format("Grasp({}, {})", grasp->sample + 1,
-                                               GraspStatusName(grasp->grasp().result.status))
+  const std::string text = grasp ? fmt::format("Grasp({}, {})", grasp->number(), grasp->facts().status)
                                  : "Grasp";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
@@ -113,33 +125,23 @@ int GraspToString(lua_State* L) {
 
 }  // namespace
 
-Pushed TrajectoryGrasps(lua_State* L, const std::shared_ptr<LuaTrajectory>& trajectory,
-                        const GraspsOptions& options) {
-  PlannerConfig config = trajectory->config;
-  options.ApplyTo(config);
-  Planning& planning = *trajectory->planning;
-  const Planner planner = planning.planner.WithConfig(config);
-  // What the generator is asked to complete depends on the settings.
-  const ReleaseResult release = planning.record.Time(
-      "grasp", [&] { return planner.Release(trajectory->graph->state, trajectory->certificate); });
-  const auto all = planning.record.Time("grasp", [&] {
-    return std::make_shared<const GraspSet>(
-        planner.CompleteGrasps(trajectory->certificate, release, trajectory->path_rank()));
-  });
-  auto grasps = std::make_shared<LuaGrasps>(LuaGrasps{all, {}});
-  const int count = static_cast<int>(all->grasps.size());
-  for (int sample = 0; sample < count; ++sample) {
-    auto step = planning.Record(config, [&](PlanRecord& record) {
-      record.AddGrasp(trajectory->certificate, trajectory->path_rank(), sample,
-                      all->grasps[static_cast<std::size_t>(sample)]);
-    });
-    grasps->grasps.push_back(
-        std::make_shared<LuaGrasp>(LuaGrasp{trajectory, config, all, sample, std::move(step)}));
+Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOptions& options) {
+  nlohmann::json command = nlohmann::json::object();
+  if (!options.fields.empty()) command["settings"] = options.ToSettings();
+  const std::shared_ptr<Session>& session = trajectory.session;
+  const Timeline::Node& end =
+      CompleteGrasps(session->timeline(), *trajectory.node, std::move(command));
+  auto grasps = std::make_shared<LuaGrasps>(LuaGrasps{{session, &end}, {}});
+  for (const Timeline::Node* node : PathTo(end)) {
+    if (node->number <= trajectory.node->number) continue;
+    if (std::holds_alternative<GraspFacts>(node->facts.details)) {
+      grasps->grasps.push_back(std::make_shared<LuaGrasp>(LuaGrasp{{session, &end}, node, nullptr}));
+    } else if (const auto* lift = std::get_if<LiftFacts>(&node->facts.details)) {
+      grasps->grasps[static_cast<std::size_t>(lift->grasp) - 1]->lift = node;
+    }
   }
-  planning.record.ChoosePath(*trajectory->mppi, trajectory->certificate, release, *all);
-  planning.record.Publish();
+  CountMemory(L, kGraspKib * static_cast<int>(grasps->grasps.size()));
   PushObject(L, std::move(grasps));
-  CountMemory(L, kGraspKib * count);
   return {1};
 }
 
@@ -155,6 +157,8 @@ const ClassInfo& GraspsClass() {
                                   Property<&GraspsFeasible>("num_feasible"),
                                   Property<&GraspsSuccess>("r_suc"),
                                   Property<&GraspsRawSuccess>("r_suc_raw"),
+                                  Property<&GraspsLifting>("num_lifting"),
+                                  Property<&GraspsLiftSuccess>("r_lift"),
                               },
                               GraspsToString,
                               &item};
@@ -173,6 +177,7 @@ const ClassInfo& GraspClass() {
                                   Property<&GraspRawReason>("raw_reason"),
                                   Property<&GraspText>("text"),
                                   Property<&GraspSample>("sample"),
+                                  Property<&GraspSource>("source"),
                                   Property<&GraspFingers>("fingers"),
                                   Property<&GraspContacts>("contacts"),
                                   Property<&GraspMoved>("moved_mm"),

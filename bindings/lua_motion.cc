@@ -16,54 +16,47 @@ const Schema kMotionSummary{"MotionSummary",
 
 constexpr int kMotionKib = 100;
 
-Planning& PlanningOf(const LuaMotion& motion) { return *motion.grasp->trajectory->planning; }
+bool IsFinished(const LuaMotion& motion) {
+  const auto state = motion.begun();
+  return state && state->motion_state->filled && state->motion_state->sweeps > 0;
+}
 
-void Append(lua_State* L, LuaMotion& motion, MotionState next,
-            std::shared_ptr<const JournalStep> step) {
-  motion.past.push_back(std::make_shared<const Moment<MotionState>>(
-      Moment<MotionState>{std::move(next), std::move(step)}));
-  CountMemory(L, kMotionKib);
+int NumSolved(const LuaMotion& motion) {
+  const auto state = motion.begun();
+  return state ? static_cast<int>(state->motion_state->solved_keys.size()) : 0;
 }
 
 // Solves the next keyframe in order; false when all are.
 bool SolveNext(lua_State* L, LuaMotion& motion) {
-  Planning& planning = PlanningOf(motion);
-  MotionState next = motion.state();
-  if (!planning.record.Time("motion", [&] { return motion.motion->SolveKeyframe(next); })) {
+  const auto state = motion.begun();
+  if (state && state->motion_state->solved_keys.size() == state->motion->task().keyframes.size()) {
     return false;
   }
-  const std::vector<int>& keyframes = motion.motion->task().keyframes;
-  const auto key = std::find(keyframes.begin(), keyframes.end(), next.solved_keys.back());
-  const int number = static_cast<int>(key - keyframes.begin()) + 1;
-  auto step = planning.Record(motion.grasp->config, [&](PlanRecord& record) {
-    record.AddKeyframe(*motion.motion, next, number);
-  });
-  Append(L, motion, std::move(next), std::move(step));
+  motion.SolveKeyframe();
+  CountMemory(L, kMotionKib);
   return true;
 }
 
-// In-betweens and smoothing; the summary and motion.csv are then this motion's.
+// In-betweens and smoothing.
 void FinishMotion(lua_State* L, LuaMotion& motion) {
+  if (IsFinished(motion)) return;
   while (SolveNext(L, motion)) ThrowIfInterrupted();
-  if (motion.finished()) return;
-  Planning& planning = PlanningOf(motion);
-  MotionState next = motion.state();
-  planning.record.Time("motion", [&] { motion.motion->Finish(next); });
-  const LuaGrasp& grasp = *motion.grasp;
-  const LuaTrajectory& trajectory = *grasp.trajectory;
-  PlanRecord& record = planning.record;
-  record.ChoosePath(*trajectory.mppi, trajectory.certificate, trajectory.release, *grasp.all);
-  record.ChooseGrasp(trajectory.certificate, grasp.grasp(), *grasp.lift());
-  record.ChooseMotion(*motion.motion, next);
-  record.Publish();
-  auto step = motion.past.back()->step;
-  Append(L, motion, std::move(next), std::move(step));
+  motion.node = &pregrasp::FinishMotion(motion.session->timeline(), *motion.node,
+                                        nlohmann::json::object());
+  CountMemory(L, kMotionKib);
 }
 
-void PushFrame(lua_State* L, const LuaMotion& motion, int frame,
-               std::shared_ptr<const JournalStep> step) {
-  PushObject(L, std::make_shared<LuaFrame>(
-                    LuaFrame{std::make_shared<const LuaMotion>(motion), frame, std::move(step)}));
+void PushFrame(lua_State* L, const LuaMotion& motion, const Timeline::Node* node) {
+  PushObject(L, std::make_shared<LuaFrame>(LuaFrame{motion.session, node}));
+}
+
+// The step of the keyframe that was solved as number `count`, from 1.
+const Timeline::Node* FindKeyframe(const LuaMotion& motion, int count) {
+  std::vector<const Timeline::Node*> solved;
+  for (const Timeline::Node* at = motion.node; at != motion.first; at = at->parent) {
+    if (at->command.verb == Verb::kKeyframe) solved.push_back(at);
+  }
+  return count > static_cast<int>(solved.size()) ? nullptr : solved[solved.size() - count];
 }
 
 std::shared_ptr<LuaMotion> MotionOfLoop(lua_State* L) {
@@ -83,15 +76,12 @@ int NextKeyframe(lua_State* L) {
   return Protect(L, [L] {
     const Machine::Pause pause(L);
     const auto motion = MotionOfLoop(L);
-    const auto count = static_cast<std::size_t>(CountLoop(L));
-    if (motion->state().solved_keys.size() < count && !SolveNext(L, *motion)) return 0;
-    // The moment that solved it: the first one with so many keyframes.
-    for (const auto& moment : motion->past) {
-      if (moment->state.solved_keys.size() != count) continue;
-      PushFrame(L, *motion, moment->state.solved_keys.back(), moment->step);
-      return 1;
-    }
-    return 0;
+    const int count = CountLoop(L);
+    if (NumSolved(*motion) < count && !SolveNext(L, *motion)) return 0;
+    const Timeline::Node* keyframe = FindKeyframe(*motion, count);
+    if (keyframe == nullptr) return 0;
+    PushFrame(L, *motion, keyframe);
+    return 1;
   });
 }
 
@@ -100,13 +90,11 @@ int NextFrame(lua_State* L) {
   return Protect(L, [L] {
     const Machine::Pause pause(L);
     const auto motion = MotionOfLoop(L);
-    const int frame = CountLoop(L) - 1;
+    const int frame = CountLoop(L);
     FinishMotion(L, *motion);
-    if (frame >= static_cast<int>(motion->state().frames.size())) return 0;
-    auto step = PlanningOf(*motion).Record(motion->grasp->config, [&](PlanRecord& record) {
-      record.AddFrame(*motion->motion, motion->state(), frame);
-    });
-    PushFrame(L, *motion, frame, std::move(step));
+    if (frame > static_cast<int>(motion->state()->motion_state->frames.size())) return 0;
+    motion->Do(Verb::kFrame, {{"frame", frame}});
+    PushFrame(L, *motion, motion->node);
     return 1;
   });
 }
@@ -133,36 +121,43 @@ bool MotionStep(lua_State* L, LuaMotion& motion) { return SolveNext(L, motion); 
 void MotionFinish(lua_State* L, LuaMotion& motion) { FinishMotion(L, motion); }
 
 void MotionBack(LuaMotion& motion, const std::optional<int>& steps) {
-  GoBack(motion.past, steps.value_or(1));
+  motion.Back(steps.value_or(1), motion.first);
 }
 
 void MotionShot(lua_State* L, LuaMotion& motion, const ShotOptions& options) {
-  ShootStep(L, PlanningOf(motion), motion.past.back()->step, options);
+  TakeShot(L, *motion.session, *motion.node, options);
 }
 
 // Properties.
 
-bool MotionFinished(LuaMotion& motion) { return motion.finished(); }
-int MotionNumKeyframes(LuaMotion& motion) {
-  return static_cast<int>(motion.motion->task().keyframes.size());
+bool MotionFinished(LuaMotion& motion) { return IsFinished(motion); }
+// nil before the first keyframe
+std::optional<int> MotionNumKeyframes(LuaMotion& motion) {
+  const auto state = motion.begun();
+  if (!state) return std::nullopt;
+  return static_cast<int>(state->motion->task().keyframes.size());
 }
-int MotionNumSolved(LuaMotion& motion) {
-  return static_cast<int>(motion.state().solved_keys.size());
-}
-int MotionNumFrames(LuaMotion& motion) {
-  return static_cast<int>(motion.motion->task().frames.size());
+int MotionNumSolved(LuaMotion& motion) { return NumSolved(motion); }
+// nil before the first keyframe
+std::optional<int> MotionNumFrames(LuaMotion& motion) {
+  const auto state = motion.begun();
+  if (!state) return std::nullopt;
+  return static_cast<int>(state->motion->task().frames.size());
 }
 std::string MotionOrder(LuaMotion& motion) {
-  return KeyframeOrderName(motion.motion->config().order);
+  const auto order = motion.settings.find("motion.order");
+  if (order != motion.settings.end()) return order->get<std::string>();
+  return KeyframeOrderName(motion.state()->config.motion.order);
 }
-std::string MotionStepId(LuaMotion& motion) { return StepId(motion.past.back()->step); }
+std::string MotionStepId(LuaMotion& motion) { return motion.step_id(); }
 // nil before it is finished
 Pushed MotionSummaryOf(lua_State* L, LuaMotion& motion) {
-  if (!motion.finished()) {
+  if (!IsFinished(motion)) {
     lua_pushnil(L);
     return {1};
   }
-  const MotionSummary summary = motion.motion->Summarize(motion.state());
+  const auto state = motion.state();
+  const MotionSummary summary = state->motion->Summarize(*state->motion_state);
   RecordWriter(L, kMotionSummary)
       .Set("frames", summary.frames)
       .Set("failed", summary.failed)
@@ -177,8 +172,8 @@ Pushed MotionSummaryOf(lua_State* L, LuaMotion& motion) {
 int MotionToString(lua_State* L) {
   const auto motion = FindObject<LuaMotion>(L, 1);
   const std::string text =
-      motion ? fmt::format("Motion({} of {} keyframes{})", MotionNumSolved(*motion),
-                           MotionNumKeyframes(*motion), motion->finished() ? ", finished" : "")
+      motion ? fmt::format("Motion({} keyframes{})", MotionNumSolved(*motion),
+                           MotionFinished(*motion) ? ", finished" : "")
              : "Motion";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
@@ -186,50 +181,42 @@ int MotionToString(lua_State* L) {
 
 // A frame.
 
-const MotionFrameTask& TaskOf(const LuaFrame& frame) {
-  return frame.motion->motion->task().frames.at(static_cast<std::size_t>(frame.frame));
-}
-const MotionFrame& SolutionOf(const LuaFrame& frame) {
-  return frame.motion->state().frames.at(static_cast<std::size_t>(frame.frame));
-}
-
 void FrameShot(lua_State* L, LuaFrame& frame, const ShotOptions& options) {
-  ShootStep(L, PlanningOf(*frame.motion), frame.step, options);
+  TakeShot(L, *frame.session, *frame.node, options);
 }
 
-int FrameNumber(LuaFrame& frame) { return frame.frame + 1; }
-double FrameTime(LuaFrame& frame) { return TaskOf(frame).t; }
-std::string FramePhase(LuaFrame& frame) { return MotionPhaseName(TaskOf(frame).phase); }
-std::string FrameLoosened(LuaFrame& frame) { return LooseningRungName(SolutionOf(frame).rung); }
-bool FrameFailed(LuaFrame& frame) { return SolutionOf(frame).rung == LooseningRung::kFailed; }
-double FrameTipError(LuaFrame& frame) { return 1e3 * SolutionOf(frame).tip_error; }
-double FrameClearance(LuaFrame& frame) { return 1e3 * SolutionOf(frame).clearance; }
-std::string FrameStepId(LuaFrame& frame) { return StepId(frame.step); }
+int FrameNumber(LuaFrame& frame) { return frame.facts().frame; }
+double FrameTime(LuaFrame& frame) { return frame.node->facts.t; }
+std::string FramePhase(LuaFrame& frame) { return frame.facts().phase; }
+std::string FrameLoosened(LuaFrame& frame) { return frame.facts().loosened; }
+bool FrameFailed(LuaFrame& frame) { return frame.facts().failed; }
+double FrameTipError(LuaFrame& frame) { return frame.facts().tip_error_mm; }
+double FrameClearance(LuaFrame& frame) { return frame.facts().clearance_mm; }
+std::string FrameStepId(LuaFrame& frame) { return frame.node->id(); }
 Pushed FramePalm(lua_State* L, LuaFrame& frame) {
-  PushTransform(L, SolutionOf(frame).configuration.X_WH);
+  PushTransform(L, frame.facts().hand.configuration().X_WH);
   return {1};
 }
 Pushed FrameJoints(lua_State* L, LuaFrame& frame) {
-  PushJoints(L, SolutionOf(frame).configuration.q);
+  PushJoints(L, frame.facts().hand.configuration().q);
   return {1};
 }
 Pushed FrameObject(lua_State* L, LuaFrame& frame) {
-  PushTransform(L, TaskOf(frame).X_WB.front());
+  PushTransform(L, frame.node->facts.object().X_WB());
   return {1};
 }
 std::vector<std::string> FrameTouching(LuaFrame& frame) {
   std::vector<std::string> fingers;
-  for (int f = 0; f < kNumFingers; ++f) {
-    if (TaskOf(frame).contacts[static_cast<std::size_t>(f)].on)
-      fingers.emplace_back(kFingerNames[f]);
+  for (const PlaceFacts& place : frame.facts().touching) {
+    fingers.emplace_back(FingerName(place.finger));
   }
   return fingers;
 }
 
 int FrameToString(lua_State* L) {
   const auto frame = FindObject<LuaFrame>(L, 1);
-  const std::string text = frame ? fmt::format("Frame({}, t = {:.3f} s, {})", frame->frame + 1,
-                                               TaskOf(*frame).t, FrameLoosened(*frame))
+  const std::string text = frame ? fmt::format("Frame({}, t = {:.3f} s, {})", FrameNumber(*frame),
+                                               FrameTime(*frame), FrameLoosened(*frame))
                                  : "Frame";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
@@ -237,26 +224,17 @@ int FrameToString(lua_State* L) {
 
 }  // namespace
 
-bool LuaMotion::finished() const {
-  return state().filled && state().sweeps >= motion->config().smoothing_sweeps;
+void LuaMotion::SolveKeyframe() {
+  Do(Verb::kKeyframe,
+     node == first ? nlohmann::json{{"grasp", grasp}} : nlohmann::json::object());
 }
 
-Pushed GraspMotion(lua_State* L, const std::shared_ptr<LuaGrasp>& grasp,
-                   const MotionOptions& options) {
-  if (!grasp->grasp().feasible()) {
-    throw InputError("", "", "a feasible grasp", GraspStatusName(grasp->grasp().result.status));
-  }
-  auto changed = std::make_shared<LuaGrasp>(*grasp);
-  options.ApplyTo(changed->config);
-  const LuaTrajectory& trajectory = *grasp->trajectory;
-  const Planner planner = trajectory.planning->planner.WithConfig(changed->config);
-  auto motion = std::make_shared<const HandMotion>(
-      planner.MakeMotion(trajectory.certificate, grasp->grasp().result, grasp->lift()->direction_W,
-                         changed->config.motion));
-  Moments<MotionState> past = {std::make_shared<const Moment<MotionState>>(
-      Moment<MotionState>{motion->Start(), grasp->step})};
-  PushObject(L, std::make_shared<LuaMotion>(
-                    LuaMotion{std::move(changed), std::move(motion), std::move(past)}));
+Pushed GraspMotion(lua_State* L, LuaGrasp& grasp, const MotionOptions& options) {
+  if (!grasp.facts().feasible) throw InputError("", "", "a feasible grasp", grasp.facts().status);
+  PushObject(L, std::make_shared<LuaMotion>(LuaMotion{
+                    {grasp.all.session, grasp.all.node, options.ToSettings()},
+                    grasp.all.node,
+                    grasp.number()}));
   CountMemory(L, kMotionKib);
   return {1};
 }

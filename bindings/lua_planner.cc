@@ -1,54 +1,29 @@
 #include "bindings/lua_planner.h"
 
-#include "bindings/scene_file.h"
-#include "bindings/script.h"
-
 namespace pregrasp {
-namespace {
 
-bool SameStart(const WorldState& a, const WorldState& b) {
-  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
-    if (a.bodies[i].p_WB != b.bodies[i].p_WB ||
-        a.bodies[i].q_WB.coeffs() != b.bodies[i].q_WB.coeffs()) {
-      return false;
-    }
+nlohmann::json Cursor::TakeOptions(nlohmann::json options) {
+  if (!settings.empty()) options["settings"] = std::exchange(settings, nlohmann::json::object());
+  return options;
+}
+
+void Cursor::Do(Verb verb, nlohmann::json options) {
+  const nlohmann::json pending = settings;
+  try {
+    node = &session->timeline().Do(*node, verb, TakeOptions(std::move(options)));
+  } catch (const InputError&) {
+    settings = pending;  // nothing was done with them
+    throw;
   }
-  return true;
 }
 
-}  // namespace
-
-Planning::Planning(std::shared_ptr<Session> owner, const PlannerConfig& config,
-                   const std::filesystem::path& weights)
-    : session(std::move(owner)),
-      start(session->start()),
-      planner(session->shared_world(), start, config, session->config().seed, session->pool(),
-              weights),
-      record(*session, planner) {}
-
-std::shared_ptr<Planning> Planning::Of(lua_State* L, const std::shared_ptr<Session>& session,
-                                       const PlannerConfig& config) {
-  ScriptContext& context = ScriptContext::Of(L);
-  std::weak_ptr<Planning>& known = context.planning[session.get()];
-  std::shared_ptr<Planning> planning = known.lock();
-  if (planning && SameStart(planning->start, session->start())) return planning;
-  const std::filesystem::path& weights = context.config.weights;
-  constexpr int kPlanningKib = 20000;
-  CountMemory(L, kPlanningKib);
-  planning = std::make_shared<Planning>(
-      session, config, weights.empty() ? DataFolder() / "assets/weights" : weights);
-  known = planning;
-  return planning;
-}
-
-void ShootStep(lua_State* L, const Planning& planning,
-               const std::shared_ptr<const JournalStep>& step, const ShotOptions& options) {
-  if (!step) throw InputError("", "", "something that was done", "nothing yet");
-  TakeShot(L, *planning.session, *step, options);
-}
-
-std::string StepId(const std::shared_ptr<const JournalStep>& step) {
-  return step ? step->record.id : "";
+void Cursor::Back(int steps, const Timeline::Node* first) {
+  int most = 0;
+  for (const Timeline::Node* at = node; at != first; at = at->parent) ++most;
+  if (steps < 0 || steps > most) {
+    throw InputError("", "steps", "0 to " + std::to_string(most) + " steps", std::to_string(steps));
+  }
+  for (int i = 0; i < steps; ++i) node = node->parent;
 }
 
 Pushed PushIpairs(lua_State* L) {

@@ -5,141 +5,99 @@
 #include <vector>
 
 #include "app/graph/contact_path.h"
-#include "app/pipeline/plan_record.h"
+#include "app/job/run_policy.h"
 #include "bindings/lua_session.h"
 #include "bindings/planner_options.h"
 
 namespace pregrasp {
 
-// The planner's stages as scripts hold them. Each object keeps all states that it went through, as
-// values that are never changed: going back drops the last ones, a fork shares them.
+// The planner's stages as scripts hold them: cursors into the session's timeline. Doing something moves an object
+// on, going back moves it to an earlier step, a fork is another cursor at the same one.
 
-/// What the stages of one session share.
-struct Planning {
-  Planning(std::shared_ptr<Session> session, const PlannerConfig& config,
-           const std::filesystem::path& weights);
-
-  /// That of the session, made with the first stage. @param config  its settings.
-  static std::shared_ptr<Planning> Of(lua_State* L, const std::shared_ptr<Session>& session,
-                                      const PlannerConfig& config);
-
-  /// Records what `add` adds, as made with `config`. @returns the step.
-  template <typename Add>
-  std::shared_ptr<const JournalStep> Record(const PlannerConfig& config, Add&& add) {
-    record.SetConfig(config);
-    add(record);
-    record.Publish();
-    return std::make_shared<const JournalStep>(session->last_step());
-  }
-
+/// A place in a session's timeline.
+struct Cursor {
   std::shared_ptr<Session> session;
-  WorldState start;
-  Planner planner;
-  PlanRecord record;
+  const Timeline::Node* node = nullptr;
+  /// Of the next command: fields of the planner's configuration by full name.
+  nlohmann::json settings = nlohmann::json::object();
+
+  std::shared_ptr<const JobState> state() const { return session->timeline().GetState(*node); }
+  const std::string& step_id() const { return node->id(); }
+
+  /// The command's options with the settings in them, which are then used up.
+  nlohmann::json TakeOptions(nlohmann::json options = nlohmann::json::object());
+  void Do(Verb verb, nlohmann::json options = nlohmann::json::object());
+  /// Moves to the node `steps` before this one. @throws InputError beyond `first`.
+  void Back(int steps, const Timeline::Node* first);
 };
 
-/// A state with the step that recorded it.
-template <typename State>
-struct Moment {
-  State state;
-  std::shared_ptr<const JournalStep> step;
-};
-template <typename State>
-using Moments = std::vector<std::shared_ptr<const Moment<State>>>;
+struct LuaGraph : Cursor {
+  const Timeline::Node* first = nullptr;  ///< graph.mesh
 
-/// Drops the last `steps` moments, all but the first at most. @throws InputError for more.
-template <typename State>
-void GoBack(Moments<State>& moments, int steps) {
-  const int most = static_cast<int>(moments.size()) - 1;
-  if (steps < 0 || steps > most) {
-    throw InputError("", "steps", "0 to " + std::to_string(most) + " steps", std::to_string(steps));
-  }
-  moments.resize(moments.size() - static_cast<std::size_t>(steps));
-}
-
-struct LuaGraph {
-  std::shared_ptr<Planning> planning;
-  PlannerConfig config;
-  Moments<ContactGraph> past;
-
-  const ContactGraph& graph() const { return past.back()->state; }
+  std::shared_ptr<const ContactGraph> graph() const { return state()->graph; }
 };
 
 struct LuaReason {
   NodeReason reason;
 };
 
-/// Paths in their order, each found when it is first asked for.
-struct LuaPaths {
-  std::shared_ptr<Planning> planning;
-  PlannerConfig config;
-  std::shared_ptr<const Moment<ContactGraph>> graph;
-  PathSearch search;
-  std::vector<ContactPath> found;
-  std::size_t next = 0;  // that next() gives
+/// Paths in their order, each found when it is first asked for; the cursor is at the graph.
+struct LuaPaths : Cursor {
+  int stages = 0;
+  int next = 1;  ///< the rank that next() gives
 };
 
 struct LuaPath {
-  std::shared_ptr<Planning> planning;
-  PlannerConfig config;
-  std::shared_ptr<const Moment<ContactGraph>> graph;
-  ContactPath path;
-  std::shared_ptr<const JournalStep> step;  // null until it is recorded
+  Cursor cursor;  ///< at the graph, or at the path's own step once it is one
+  std::shared_ptr<const ContactPath> path;
+
+  bool recorded() const { return cursor.node->command.verb == Verb::kPath; }
+  void Record();
 };
 
-struct LuaOptimizer {
-  std::shared_ptr<Planning> planning;
-  PlannerConfig config;
-  std::shared_ptr<const Moment<ContactGraph>> graph;  // that mppi refers to
-  std::shared_ptr<const Mppi> mppi;
-  Moments<MppiState> past;
+struct LuaOptimizer : Cursor {
+  const Timeline::Node* first = nullptr;  ///< paths.rank.P
 
-  const MppiState& state() const { return past.back()->state; }
+  int path_rank() const { return std::get<PathFacts>(first->facts.details).rank; }
+  /// Null before the first iteration.
+  const IterationFacts* facts() const { return std::get_if<IterationFacts>(&node->facts.details); }
 };
 
-struct LuaTrajectory {
-  std::shared_ptr<Planning> planning;
-  PlannerConfig config;
-  std::shared_ptr<const Moment<ContactGraph>> graph;
-  std::shared_ptr<const Mppi> mppi;
-  Certificate certificate;
-  ReleaseResult release;
-  std::shared_ptr<const JournalStep> step;
+struct LuaTrajectory : Cursor {
+  const CertifyFacts& facts() const { return std::get<CertifyFacts>(node->facts.details); }
+};
 
-  int path_rank() const { return mppi->problem().path.rank; }
+/// All grasps of a trajectory; the cursor is after their lifts.
+struct LuaGrasps : Cursor {
+  std::vector<std::shared_ptr<struct LuaGrasp>> grasps;  ///< by number
 };
 
 struct LuaGrasp {
-  std::shared_ptr<const LuaTrajectory> trajectory;
-  PlannerConfig config;
-  std::shared_ptr<const GraspSet> all;
-  int sample = 0;
-  std::shared_ptr<const JournalStep> step;
+  Cursor all;                               ///< after the lifts of all grasps
+  const Timeline::Node* step = nullptr;     ///< its own
+  const Timeline::Node* lift = nullptr;     ///< null if it was not lifted
 
-  const CompletedGrasp& grasp() const { return all->grasps[static_cast<std::size_t>(sample)]; }
-  const std::optional<LiftResult>& lift() const {
-    return all->lifts[static_cast<std::size_t>(sample)];
+  const GraspFacts& facts() const { return std::get<GraspFacts>(step->facts.details); }
+  int number() const { return facts().number; }
+  const CompletedGrasp& grasp(const JobState& state) const {
+    return state.grasps->grasps[static_cast<std::size_t>(number()) - 1];
   }
 };
 
-struct LuaGrasps {
-  std::shared_ptr<const GraspSet> all;
-  std::vector<std::shared_ptr<LuaGrasp>> grasps;  // by sample
+struct LuaMotion : Cursor {
+  const Timeline::Node* first = nullptr;  ///< before its first keyframe
+  int grasp = 0;                          ///< that it ends in
+  /// What it has come to; null before the first keyframe.
+  std::shared_ptr<const JobState> begun() const { return node == first ? nullptr : state(); }
+  void SolveKeyframe();
 };
 
-struct LuaMotion {
-  std::shared_ptr<const LuaGrasp> grasp;
-  std::shared_ptr<const HandMotion> motion;
-  Moments<MotionState> past;
-
-  const MotionState& state() const { return past.back()->state; }
-  bool finished() const;
-};
-
+/// A step that shows a frame.
 struct LuaFrame {
-  std::shared_ptr<const LuaMotion> motion;  // as it was when the frame was made
-  int frame = 0;
-  std::shared_ptr<const JournalStep> step;
+  std::shared_ptr<Session> session;
+  const Timeline::Node* node = nullptr;
+
+  const FrameFacts& facts() const { return std::get<FrameFacts>(node->facts.details); }
 };
 
 const ClassInfo& GraphClass();
@@ -200,17 +158,8 @@ Pushed SessionGraph(lua_State* L, const std::shared_ptr<Session>& session,
 
 // What one stage gives to the next.
 Pushed PathOptimize(lua_State* L, LuaPath& path, const OptimizeOptions& options);
-Pushed TrajectoryGrasps(lua_State* L, const std::shared_ptr<LuaTrajectory>& trajectory,
-                        const GraspsOptions& options);
-Pushed GraspMotion(lua_State* L, const std::shared_ptr<LuaGrasp>& grasp,
-                   const MotionOptions& options);
-
-/// shot{..} of something that a step recorded. @throws InputError if none did yet.
-void ShootStep(lua_State* L, const Planning& planning,
-               const std::shared_ptr<const JournalStep>& step, const ShotOptions& options);
-
-/// The id of a step, "" for none.
-std::string StepId(const std::shared_ptr<const JournalStep>& step);
+Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOptions& options);
+Pushed GraspMotion(lua_State* L, LuaGrasp& grasp, const MotionOptions& options);
 
 /// Calls ipairs on the list on top.
 Pushed PushIpairs(lua_State* L);

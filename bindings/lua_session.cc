@@ -17,6 +17,7 @@ namespace {
 
 const Schema kSettleOptions{"SettleOptions", {"seconds"}};
 const Schema kSettleResult{"SettleResult", {"moved_mm", "rotated_deg", "at_rest", "body"}};
+const Schema kVerdict{"Verdict", {"verdict", "mu", "mu_star", "sentence", "step_id"}};
 const Schema kSimulateOptions{"SimulateOptions", {"trace"}};
 const Schema kRecordOptions{"RecordOptions", {"dir", "pictures"}};
 const Schema kShotOptions{"ShotOptions",
@@ -29,43 +30,6 @@ const Schema kMeshOptions{"MeshOptions", {"triangles"}};
 Vector3 CalcRpyDeg(const Matrix3& R) {
   const double pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0));
   return Vector3(std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))) * (180.0 / kPi);
-}
-
-// The overlays of a picture, by name.
-struct Overlay {
-  const char* name;
-  bool PictureConfig::*flag;
-};
-constexpr Overlay kOverlays[] = {
-    {"forces", &PictureConfig::forces},     {"cones", &PictureConfig::cones},
-    {"contacts", &PictureConfig::contacts}, {"trace", &PictureConfig::trace},
-    {"ghost", &PictureConfig::ghost},       {"fingers", &PictureConfig::fingers},
-    {"axes", &PictureConfig::axes},         {"mesh", &PictureConfig::mesh},
-    {"scores", &PictureConfig::scores},     {"rollouts", &PictureConfig::rollouts},
-    {"hand", &PictureConfig::hand}};
-
-void ReadOverlays(const std::vector<std::string>& names, PictureConfig& config) {
-  for (const Overlay& overlay : kOverlays) config.*overlay.flag = false;
-  for (const std::string& name : names) {
-    const auto found = std::find_if(std::begin(kOverlays), std::end(kOverlays),
-                                    [&](const Overlay& overlay) { return name == overlay.name; });
-    if (found == std::end(kOverlays)) {
-      std::string all;
-      for (const Overlay& overlay : kOverlays) {
-        if (!all.empty()) all += ", ";
-        all += overlay.name;
-      }
-      throw InputError("", "overlay", "some of " + all, '"' + name + '"');
-    }
-    config.*found->flag = true;
-  }
-}
-
-RenderQuality ParseQuality(const std::string& text) {
-  if (text == "draft") return RenderQuality::kDraft;
-  if (text == "normal") return RenderQuality::kNormal;
-  if (text == "still") return RenderQuality::kStill;
-  throw InputError("", "quality", "\"draft\", \"normal\" or \"still\"", '"' + text + '"');
 }
 
 }  // namespace
@@ -88,17 +52,18 @@ ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::stri
     picture.quality = ParseQuality(*quality);
   }
   if (const auto overlays = fields.Find<std::vector<std::string>>("overlay")) {
-    ReadOverlays(*overlays, picture);
+    SetOverlays(picture, *overlays);
   }
   return options;
 }
 
-void TakeShot(lua_State* L, Session& session, const JournalStep& step, const ShotOptions& options) {
+void TakeShot(lua_State* L, Session& session, const Timeline::Node& node,
+              const ShotOptions& options) {
   if (options.file) {
-    session.ShootToFile(step, options.shot,
+    session.ShootToFile(node, options.shot,
                         Machine::Of(L).files().ResolveForWriting(*options.file));
   } else {
-    session.Shoot(step, options.shot);
+    session.Shoot(node, options.shot);
   }
 }
 
@@ -196,19 +161,32 @@ namespace {
 // Methods.
 
 Pushed SessionSettle(lua_State* L, Session& session, const SettleOptions& options) {
-  const SettleResult result = session.Settle(options.seconds);
+  const auto& result = std::get<SettleFacts>(session.Settle(options.seconds).facts.details);
   RecordWriter(L, kSettleResult)
-      .Set("moved_mm", 1e3 * result.largest.moved)
-      .Set("rotated_deg", RadToDeg(result.largest.rotated))
+      .Set("moved_mm", result.moved_mm)
+      .Set("rotated_deg", result.rotated_deg)
       .Set("at_rest", result.at_rest)
-      .Set("body", result.largest.body);
+      .Set("body", result.body);
+  return {1};
+}
+
+// Whether the object can be grasped where it stands.
+Pushed SessionVerdict(lua_State* L, Session& session) {
+  const Timeline::Node& node = session.timeline().Do(session.timeline().root(), Verb::kVerdict);
+  const auto& verdict = std::get<VerdictFacts>(node.facts.details);
+  RecordWriter(L, kVerdict)
+      .Set("verdict", verdict.verdict)
+      .Set("mu", verdict.mu)
+      .Set("mu_star", verdict.mu_star)
+      .Set("sentence", verdict.sentence)
+      .Set("step_id", node.id());
   return {1};
 }
 
 Pushed SessionSimulate(lua_State* L, const std::shared_ptr<Session>& session,
                        const SimulateOptions& options) {
-  PushObject(
-      L, std::make_shared<LuaSimulation>(LuaSimulation{session, session->Simulate(options.trace)}));
+  PushObject(L, std::make_shared<LuaSimulation>(
+                    LuaSimulation{session, &session->start(), options.trace}));
   return {1};
 }
 
@@ -225,11 +203,12 @@ std::string SessionSave(lua_State* L, Session& session, const std::optional<std:
 }
 
 void SessionShot(lua_State* L, Session& session, const ShotOptions& options) {
-  TakeShot(L, session, session.last_step(), options);
+  TakeShot(L, session, session.timeline().last(), options);
 }
 
 Pushed SessionBody(lua_State* L, Session& session, const std::string& name) {
-  PushBody(L, session.world(), session.start(), FindBody(session.scene(), name));
+  PushBody(L, session.world(), session.GetStart(),
+           FindBody(session.scene(), name));
   return {1};
 }
 
@@ -249,7 +228,7 @@ std::int64_t SessionSeed(Session& session) {
   return static_cast<std::int64_t>(session.config().seed);
 }
 double SessionDt(Session& session) { return session.world().config().dt; }
-std::string SessionStepId(Session& session) { return session.last_step_id(); }
+std::string SessionStepId(Session& session) { return session.timeline().last().id(); }
 std::vector<std::string> SessionDepartures(Session& session) {
   return RuleDepartures(session.scene());
 }
@@ -259,7 +238,7 @@ std::vector<std::string> SessionBodies(Session& session) {
   return names;
 }
 Pushed SessionObject(lua_State* L, Session& session) {
-  PushBody(L, session.world(), session.start(), 0);
+  PushBody(L, session.world(), session.GetStart(), 0);
   return {1};
 }
 
@@ -275,6 +254,7 @@ const ClassInfo& SessionClass() {
   static const ClassInfo info{"Session",
                               {
                                   Method<&SessionSettle>("settle", "options"),
+                                  Method<&SessionVerdict>("verdict"),
                                   Method<&SessionSimulate>("simulate", "options"),
                                   Method<&SessionRecord>("record", "options"),
                                   Method<&SessionBreakWhen>("break_when", "predicate"),
@@ -301,7 +281,7 @@ const ClassInfo& SessionClass() {
 }
 
 std::vector<const Schema*> SessionSchemas() {
-  return {&kSettleOptions, &kSettleResult, &kSimulateOptions, &kRecordOptions,
+  return {&kSettleOptions, &kSettleResult, &kVerdict, &kSimulateOptions, &kRecordOptions,
           &kShotOptions,   &kBody,         &kCloudOptions,    &kMeshOptions};
 }
 

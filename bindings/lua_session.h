@@ -1,16 +1,21 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
-#include "app/pipeline/session.h"
+#include "app/session/session.h"
 #include "bindings/function.h"
 
 namespace pregrasp {
 
-/// A simulation as a script holds it: it knows the session whose journal its steps go to.
+/// A simulation as a script holds it: a cursor into its session's timeline.
 struct LuaSimulation {
   std::shared_ptr<Session> session;
-  std::shared_ptr<Simulation> simulation;
+  const Timeline::Node* node = nullptr;
+  bool traced = false;
+
+  /// As it is at the cursor.
+  std::shared_ptr<const Simulation> simulation() const;
 };
 
 const ClassInfo& SessionClass();
@@ -34,18 +39,22 @@ struct LuaValue<Predicate> {
   static Predicate Read(lua_State* L, int index, const std::string& path);
 };
 
-/// break_when(f): from now on f sees the events of each physics step of the session's simulations,
-/// after each of their actions; the first one that it says yes to is where the action ended.
+/// break_when(f): from now on f sees the events of each physics step of the session's simulations, after each
+/// of their actions; the first one that it says yes to is where the action ended.
 void SessionBreakWhen(lua_State* L, const std::shared_ptr<Session>& session,
                       const Predicate& predicate);
 
-/// Ends the simulation's last action where the session's predicate asks for it. @param first  of
-/// the action's states. @returns whether it did.
-bool StopWhereAsked(lua_State* L, const LuaSimulation& sim, int first);
+/// Whether the session has such a function.
+bool HasPredicate(lua_State* L, const std::shared_ptr<Session>& session);
+/// @throws InputError while it is asked: simulations stand still then.
+void RequireOutsidePredicate(lua_State* L, const std::shared_ptr<Session>& session);
+/// The first of the simulation's states, from `first` on, where it says yes; none if it never does.
+std::optional<int> FindStop(lua_State* L, const std::shared_ptr<Session>& session,
+                            const Simulation& simulation, int first);
 
 /// What shot{..} takes.
 struct ShotOptions {
-  JournalStep::Shot shot;
+  Shot shot;
   std::optional<std::string> file;
 };
 template <>
@@ -54,7 +63,8 @@ struct LuaValue<ShotOptions> {
 };
 
 /// Takes the picture of a step, for the run or for a file of its own.
-void TakeShot(lua_State* L, Session& session, const JournalStep& step, const ShotOptions& options);
+void TakeShot(lua_State* L, Session& session, const Timeline::Node& node,
+              const ShotOptions& options);
 
 /// Pushes where a body is and how it moves. @param index  of the scene.
 void PushBody(lua_State* L, const World& world, const WorldState& state, int index);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "app/core/interrupt.h"
 #include "app/pictures/forces.h"
 #include "bindings/lua_session.h"
 
@@ -79,79 +80,133 @@ namespace {
 
 constexpr int kBytesPerStepKib = 3;
 
-// Methods. Each that advances tells Lua's collector what the past has grown by, and returns whether
-// break_when stopped it.
-
-template <typename Body>
-bool Advance(lua_State* L, LuaSimulation& sim, Body&& body) {
-  const int before = sim.simulation->num_states();
-  body();
-  CountMemory(L, kBytesPerStepKib * (sim.simulation->num_states() - before));
-  return StopWhereAsked(L, sim, before);
+// Does an action, ended where break_when says, and moves on. Tells Lua's collector what the past has grown by.
+// @returns whether break_when stopped it.
+bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
+  RequireOutsidePredicate(L, sim.session);
+  Timeline& timeline = sim.session->timeline();
+  if (sim.traced && !timeline.GetState(*sim.node)->simulation) options["trace"] = true;
+  const int before = sim.simulation()->num_states();
+  bool stopped = false;
+  if (HasPredicate(L, sim.session)) {
+    Applied applied = timeline.Try(*sim.node, verb, options);
+    const std::optional<int> stop =
+        FindStop(L, sim.session, *applied.state->simulation, before);
+    stopped = stop.has_value();
+    if (stopped) {
+      options["stopped_after"] = *stop + 1 - before;
+      sim.node = &timeline.Do(*sim.node, verb, std::move(options));
+    } else {
+      sim.node = &timeline.Commit(*sim.node, std::move(applied));
+    }
+  } else {
+    try {
+      sim.node = &timeline.Do(*sim.node, verb, std::move(options));
+    } catch (const Interrupted&) {
+      sim.node = &timeline.last();  // what was done until then
+      throw;
+    }
+  }
+  CountMemory(L, kBytesPerStepKib * (sim.simulation()->num_states() - before));
+  return stopped;
 }
 
-void SimTouch(LuaSimulation& sim, const TouchOptions& options) {
-  sim.session->Touch(sim.simulation, options.finger, options.p_OC);
+nlohmann::json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+// Methods.
+
+void SimTouch(lua_State* L, LuaSimulation& sim, const TouchOptions& options) {
+  Act(L, sim, Verb::kTouch,
+      {{"finger", FingerName(options.finger)}, {"p_OC", ToJson(options.p_OC)}});
 }
 
 bool SimMove(lua_State* L, LuaSimulation& sim, const MoveOptions& options) {
-  const Vector3& from = sim.simulation->state().fingers[static_cast<int>(options.finger)].p_WTarget;
+  const Vector3& from =
+      sim.simulation()->state().fingers[static_cast<int>(options.finger)].p_WTarget;
   const Vector3 to = options.to ? *options.to : Vector3(from + *options.by);
-  return Advance(L, sim,
-                 [&] { sim.session->Move(sim.simulation, options.finger, to, options.seconds); });
+  return Act(L, sim, Verb::kMove,
+             {{"finger", FingerName(options.finger)},
+              {"p_WTarget", ToJson(to)},
+              {"seconds", options.seconds}});
 }
 
-void SimLift(LuaSimulation& sim, const LiftOptions& options) {
-  sim.session->Lift(sim.simulation, options.finger);
+void SimLift(lua_State* L, LuaSimulation& sim, const LiftOptions& options) {
+  Act(L, sim, Verb::kLetGo, {{"finger", FingerName(options.finger)}});
 }
 
 bool SimWait(lua_State* L, LuaSimulation& sim, const WaitOptions& options) {
-  return Advance(L, sim, [&] { sim.session->Wait(sim.simulation, options.seconds); });
+  return Act(L, sim, Verb::kWait, {{"seconds", options.seconds}});
 }
 
 bool SimStep(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
-  return Advance(L, sim, [&] { sim.session->Step(sim.simulation, steps.value_or(1)); });
+  return Act(L, sim, Verb::kWait, {{"steps", steps.value_or(1)}});
 }
 
-void SimBack(LuaSimulation& sim, const std::optional<int>& steps) {
-  sim.simulation->Back(steps.value_or(1));
+int NumStates(const Timeline& timeline, const Timeline::Node& node) {
+  const auto state = timeline.GetState(node);
+  return state->simulation ? state->simulation->num_states() : 1;
+}
+
+// Takes physics steps back, exactly: to the action that ended there, else to one that is stopped there.
+void SimBack(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
+  RequireOutsidePredicate(L, sim.session);
+  Timeline& timeline = sim.session->timeline();
+  const int count = NumStates(timeline, *sim.node), back = steps.value_or(1);
+  if (back < 0 || back >= count) {
+    throw InputError("", "steps", fmt::format("0 to {} steps", count - 1), std::to_string(back));
+  }
+  const Timeline::Node* at = sim.node;
+  while (at->parent != nullptr && std::holds_alternative<SimulationFacts>(at->facts.details) &&
+         NumStates(timeline, *at->parent) > count - back) {
+    at = at->parent;
+  }
+  const int ends = NumStates(timeline, *at);
+  if (ends == count - back) {
+    sim.node = at;
+    return;
+  }
+  const int begins = NumStates(timeline, *at->parent);
+  if (begins == count - back) {
+    sim.node = at->parent;
+    return;
+  }
+  nlohmann::json options = at->command.options;
+  options["stopped_after"] = count - back - begins;
+  sim.node = &timeline.Do(*at->parent, at->command.verb, std::move(options));
 }
 
 Pushed SimFork(lua_State* L, LuaSimulation& sim) {
-  PushObject(L, std::make_shared<LuaSimulation>(
-                    LuaSimulation{sim.session, std::make_shared<Simulation>(*sim.simulation)}));
-  CountMemory(L, 1 + sim.simulation->num_states() / 64);
+  PushObject(L, std::make_shared<LuaSimulation>(sim));
+  CountMemory(L, 1 + sim.simulation()->num_states() / 64);
   return {1};
 }
 
 void SimShot(lua_State* L, LuaSimulation& sim, const ShotOptions& options) {
-  TakeShot(L, *sim.session, sim.session->StepOf(*sim.simulation), options);
+  TakeShot(L, *sim.session, *sim.node, options);
 }
 
 Pushed SimBody(lua_State* L, LuaSimulation& sim, const std::string& name) {
-  PushBody(L, sim.simulation->world(), sim.simulation->state(),
+  PushBody(L, sim.session->world(), sim.simulation()->state(),
            FindBody(sim.session->scene(), name));
   return {1};
 }
 
 // Properties.
 
-double SimTime(LuaSimulation& sim) { return sim.simulation->state().t; }
-int SimSteps(LuaSimulation& sim) { return sim.simulation->num_states() - 1; }
-std::string SimStepId(LuaSimulation& sim) { return sim.simulation->step_id(); }
+double SimTime(LuaSimulation& sim) { return sim.node->facts.t; }
+int SimSteps(LuaSimulation& sim) { return sim.simulation()->num_states() - 1; }
+std::string SimStepId(LuaSimulation& sim) { return sim.node->id(); }
 
 Pushed SimObject(lua_State* L, LuaSimulation& sim) {
-  PushBody(L, sim.simulation->world(), sim.simulation->state(), 0);
+  PushBody(L, sim.session->world(), sim.simulation()->state(), 0);
   return {1};
 }
 
 Pushed SimFingers(lua_State* L, LuaSimulation& sim) {
-  const WorldState& state = sim.simulation->state();
+  const StepFacts& step = sim.node->facts;
   RecordWriter fingers(L, kFingers);
-  for (int i = 0; i < kNumFingers; ++i) {
-    const FingertipState& tip = state.fingers[i];
-    const ForceSplit split =
-        SplitFingerForce(sim.simulation->world(), state, static_cast<Finger>(i));
+  for (const FingerFacts& tip : step.fingers) {
+    const ForceSplit split = SplitFingerForce(sim.session->scene(), step.object().q_WB, tip);
     RecordWriter(L, kFinger)
         .Set("on", tip.on)
         .Set("touching", tip.touching)
@@ -166,55 +221,60 @@ Pushed SimFingers(lua_State* L, LuaSimulation& sim) {
         .Set("p_WF", tip.p_WF)
         .Set("p_WTarget", tip.p_WTarget)
         .Set("f_W", tip.f_W);
-    fingers.SetTop(kFingerNames[i]);
+    fingers.SetTop(FingerName(tip.finger));
   }
   return {1};
 }
 
 Pushed SimContacts(lua_State* L, LuaSimulation& sim) {
-  const std::vector<ContactPoint>& contacts = sim.simulation->contacts();
+  const std::vector<ContactFacts>& contacts = sim.node->facts.contacts;
   const std::vector<Body>& bodies = sim.session->scene().bodies;
   lua_createtable(L, static_cast<int>(contacts.size()), 0);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const ContactPoint& contact = contacts[i];
+    const ContactFacts& contact = contacts[i];
     RecordWriter(L, kContact)
-        .Set("a", bodies[contact.body_a].name)
-        .Set("b", bodies[contact.body_b].name)
-        .Set("p_W", contact.p_WC)
+        .Set("a", bodies[contact.a].name)
+        .Set("b", bodies[contact.b].name)
+        .Set("p_W", contact.p_W)
         .Set("nhat_W", contact.nhat_W)
         .Set("f_W", contact.f_W)
         .Set("force_N", contact.f_W.norm())
-        .Set("gap_mm", 1e3 * contact.phi)
+        .Set("gap_mm", 1e3 * contact.gap)
         .Set("slip_speed", contact.v_slip_W.norm());
     lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
   }
   return {1};
 }
 
+// nil where it is not traced
 Pushed SimTrace(lua_State* L, LuaSimulation& sim) {
-  const int last = sim.simulation->num_states() - 1;
-  if (!sim.simulation->traced() || last == 0) {
+  const auto* facts = std::get_if<SimulationFacts>(&sim.node->facts.details);
+  if (facts == nullptr || !facts->trace) {
     lua_pushnil(L);
     return {1};
   }
-  const StepTrace& trace = sim.simulation->trace_at(last);
   RecordWriter(L, kStepTrace)
-      .Set("max_penetration_mm", 1e3 * trace.max_penetration)
-      .Set("kinetic_J", trace.kinetic_energy)
-      .Set("potential_J", trace.potential_energy);
+      .Set("max_penetration_mm", 1e3 * facts->trace->max_penetration)
+      .Set("kinetic_J", facts->trace->kinetic_energy)
+      .Set("potential_J", facts->trace->potential_energy);
   return {1};
 }
 
 int SimToString(lua_State* L) {
   const auto sim = FindObject<LuaSimulation>(L, 1);
-  const std::string text = sim ? fmt::format("Simulation({}, t = {:.3f} s)",
-                                             sim->simulation->step_id(), sim->simulation->state().t)
+  const std::string text = sim ? fmt::format("Simulation({}, t = {:.3f} s)", sim->node->id(), SimTime(*sim))
                                : "Simulation";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
 }
 
 }  // namespace
+
+std::shared_ptr<const Simulation> LuaSimulation::simulation() const {
+  const auto state = session->timeline().GetState(*node);
+  if (state->simulation) return state->simulation;
+  return std::make_shared<const Simulation>(session->job().shared_world(), state->start, traced);
+}
 
 const ClassInfo& SimulationClass() {
   static const ClassInfo info{"Simulation",

@@ -78,8 +78,16 @@ const StageKeys& MotionKeys() {
 
 }  // namespace
 
-void StageOptions::ApplyTo(PlannerConfig& config) const {
-  for (const auto& [name, value] : fields) SetPlannerField(config, name, value);
+nlohmann::json StageOptions::ToSettings() const {
+  PlannerConfig scratch;
+  nlohmann::json settings = nlohmann::json::object();
+  for (const auto& [name, value] : fields) {
+    SetPlannerField(scratch, name, value);
+    const std::size_t dot = name.find('.');
+    // As the configuration has it, so that 48.0 is 48.
+    settings[name] = PlannerConfigJson(scratch)[name.substr(0, dot)][name.substr(dot + 1)];
+  }
+  return settings;
 }
 
 GraphOptions LuaValue<GraphOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {

@@ -14,8 +14,8 @@ namespace pregrasp {
 struct StageOptions {
   std::vector<std::pair<std::string, FieldValue>> fields;  ///< full names
 
-  /// @throws InputError for a value that does not fit.
-  void ApplyTo(PlannerConfig& config) const;
+  /// The same as a command's `settings`. @throws InputError for a value that does not fit.
+  nlohmann::json ToSettings() const;
 };
 
 struct GraphOptions : StageOptions {};

@@ -6,6 +6,7 @@
 
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
+#include "app/job/planner_settings.h"
 #include "app/recording/build_info.h"
 #include "bindings/lua_grasp.h"
 #include "bindings/lua_planner.h"
@@ -104,13 +105,16 @@ std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions
   } else {
     FinishScene(scene, machine.script_folder(), options.settings);
   }
-  RequireNoSettingsLeft(options.settings);
   SessionConfig config;
+  ApplyPlannerSettings(config.planner, options.settings);
+  RequireNoSettingsLeft(options.settings, PlannerRoots());
   config.seed = static_cast<std::uint64_t>(
       options.seed.value_or(static_cast<std::int64_t>(context.config.machine.seed)));
   config.threads = options.threads.value_or(context.config.threads);
   config.pictures = context.config.pictures;
-  config.remake = context.config.remake;
+  config.command = context.config.remake;
+  config.weights = context.config.weights.empty() ? DataFolder() / "assets" / "weights"
+                                                  : context.config.weights;
   constexpr int kSessionKib = 2000;
   CountMemory(L, kSessionKib);
   return std::make_shared<Session>(std::move(scene), config);
@@ -147,14 +151,6 @@ Api MakeApi() {
 const Api& GetApi() {
   static const Api api = MakeApi();
   return api;
-}
-
-PictureMode ParsePictureMode(const std::string& text, const std::string& where,
-                             const std::string& field) {
-  if (text == "none") return PictureMode::kNone;
-  if (text == "key") return PictureMode::kKey;
-  if (text == "all") return PictureMode::kAll;
-  throw InputError(where, field, "\"none\", \"key\" or \"all\"", '"' + text + '"');
 }
 
 ScriptContext& ScriptContext::Of(lua_State* L) {

@@ -9,13 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "app/pipeline/session.h"
+#include "app/session/session.h"
 #include "bindings/machine.h"
 #include "bindings/schema.h"
 
 namespace pregrasp {
-
-struct Planning;
 
 /// What the command line gives to a script.
 struct ScriptConfig {
@@ -26,10 +24,6 @@ struct ScriptConfig {
   std::filesystem::path weights;  ///< of the networks; empty for the program's own
   std::string remake;             ///< the command line itself, for the footer of pictures
 };
-
-/// "none", "key" or "all". @throws InputError naming `where` and `field`.
-PictureMode ParsePictureMode(const std::string& text, const std::string& where,
-                             const std::string& field);
 
 /// Runs a Lua script. Recordings that are open at its end are finished; when it was interrupted,
 /// they are finished with status "interrupted"; when it failed, they leave nothing.
@@ -49,8 +43,8 @@ struct ScriptContext {
     int reference = LUA_NOREF;  ///< of the function, in the registry
   };
   std::map<const Session*, BreakPoint> predicates;
-  /// What the planner's stages of a session share, while one of them is held.
-  std::map<const Session*, std::weak_ptr<Planning>> planning;
+  /// Whose functions are being asked now, innermost last.
+  std::vector<const Session*> asking;
 
   static ScriptContext& Of(lua_State* L);
 };

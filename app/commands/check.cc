@@ -54,9 +54,9 @@ int Check(const CheckOptions& options) {
 
 }  // namespace
 
-void AddCheck(const Command& app, Action& action) {
+void AddCheck(const Subcommand& app, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  const Command command = app.AddCommand(
+  const Subcommand command = app.AddCommand(
       "check", "Check a scene: overlaps, not at rest, implausible units, rules, graspable already");
   command.Add("SCENE", options->scene, "The scene, a Lua file").Required();
   command.Add("--set", options->settings, "Change a value: object.mass=0.2").OneAtATime();

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "app/commands/command.h"
+#include "app/commands/subcommand.h"
 
 namespace pregrasp {
 
@@ -10,11 +10,12 @@ namespace pregrasp {
 using Action = std::function<int()>;
 
 // One subcommand each: describes its options to `app`, and sets `action` when it was chosen.
-void AddCheck(const Command& app, Action& action);
-void AddDataset(const Command& app, Action& action);
-void AddInfo(const Command& app, Action& action);
-void AddRepl(const Command& app, Action& action);
-void AddRun(const Command& app, Action& action);
-void AddScript(const Command& app, Action& action);
+void AddCheck(const Subcommand& app, Action& action);
+void AddDataset(const Subcommand& app, Action& action);
+void AddInfo(const Subcommand& app, Action& action);
+void AddRepl(const Subcommand& app, Action& action);
+void AddRun(const Subcommand& app, Action& action);
+void AddScript(const Subcommand& app, Action& action);
+void AddShow(const Subcommand& app, Action& action);
 
 }  // namespace pregrasp

@@ -80,7 +80,7 @@ int MakeLabels(MakeOptions& options) {
   return 0;
 }
 
-void AddMakeOptions(const Command& command, MakeOptions& options) {
+void AddMakeOptions(const Subcommand& command, MakeOptions& options) {
   command.Add("--out", options.run.folder, "Folder for the items, one file each").Required();
   command.Add("--items", options.run.items, "Objects in the whole data set").ShowDefault();
   command.Add("--shard", options.shard, "i/n: make every n-th item, from the i-th").ShowDefault();
@@ -88,9 +88,9 @@ void AddMakeOptions(const Command& command, MakeOptions& options) {
   options.items.AddTo(command);
 }
 
-void AddGrasps(const Command& dataset, Action& action) {
+void AddGrasps(const Subcommand& dataset, Action& action) {
   auto options = std::make_shared<MakeOptions>();
-  const Command command =
+  const Subcommand command =
       dataset.AddCommand("grasps",
                          "Grow feasible grasps on random objects; goes on where an "
                          "earlier run was cut off");
@@ -98,9 +98,9 @@ void AddGrasps(const Command& dataset, Action& action) {
   command.OnChosen([options, &action] { action = [options] { return MakeGrasps(*options); }; });
 }
 
-void AddLabels(const Command& dataset, Action& action) {
+void AddLabels(const Subcommand& dataset, Action& action) {
   auto options = std::make_shared<MakeOptions>();
-  const Command command = dataset.AddCommand(
+  const Subcommand command = dataset.AddCommand(
       "labels", "Label contacts with the share of feasible completions; goes on likewise");
   command.Add("GRASPS", options->grasps, "Merged data set of grasps").Required();
   command.Add("--generator", options->generator, "Weights of the grasp generators").Required();
@@ -109,9 +109,9 @@ void AddLabels(const Command& dataset, Action& action) {
   command.OnChosen([options, &action] { action = [options] { return MakeLabels(*options); }; });
 }
 
-void AddMerge(const Command& dataset, Action& action) {
+void AddMerge(const Subcommand& dataset, Action& action) {
   auto options = std::make_shared<MergeOptions>();
-  const Command command =
+  const Subcommand command =
       dataset.AddCommand("merge", "Put the items of shards together, for pregrasp-train");
   command.Add("FOLDERS", options->folders, "Where the items were made").Required();
   command.Add("--items", options->items, "Take items 0 to this less 1").Required();
@@ -129,7 +129,7 @@ void AddMerge(const Command& dataset, Action& action) {
 
 }  // namespace
 
-void ItemOptions::AddTo(const Command& command) {
+void ItemOptions::AddTo(const Subcommand& command) {
   command.Add("--scenes", config.scenes, "Scenes of each object").ShowDefault();
   command.AddSeed(config.seed, "Seed of everything random");
   command.Add("--exclude", excluded,
@@ -137,7 +137,7 @@ void ItemOptions::AddTo(const Command& command) {
               "all evaluation scenes");
 }
 
-void ItemOptions::AddLabelsTo(const Command& command) {
+void ItemOptions::AddLabelsTo(const Subcommand& command) {
   command.Add("--labels", config.labels.per_scene, "Labels of each scene").ShowDefault();
   command.Add("--tries", config.labels.tries, "Completions at each relief").ShowDefault();
 }
@@ -155,8 +155,8 @@ ItemConfig ItemOptions::Resolve() const {
   return resolved;
 }
 
-void AddDataset(const Command& app, Action& action) {
-  const Command dataset = app.AddCommand("dataset", "Build training data, and look at it");
+void AddDataset(const Subcommand& app, Action& action) {
+  const Subcommand dataset = app.AddCommand("dataset", "Build training data, and look at it");
   dataset.RequireCommand();
   AddGrasps(dataset, action);
   AddLabels(dataset, action);

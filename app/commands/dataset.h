@@ -13,8 +13,8 @@ struct ItemOptions {
   ItemConfig config;
   std::vector<std::filesystem::path> excluded;
 
-  void AddTo(const Command& command);
-  void AddLabelsTo(const Command& command);
+  void AddTo(const Subcommand& command);
+  void AddLabelsTo(const Subcommand& command);
 
   /// The configuration with the excluded objects: those of the scenes named, else of all
   /// evaluation scenes. @throws InputError.
@@ -22,7 +22,7 @@ struct ItemOptions {
 };
 
 // Subcommands of it.
-void AddDatasetPictures(const Command& dataset, Action& action);
-void AddDatasetProbe(const Command& dataset, Action& action);
+void AddDatasetPictures(const Subcommand& dataset, Action& action);
+void AddDatasetProbe(const Subcommand& dataset, Action& action);
 
 }  // namespace pregrasp

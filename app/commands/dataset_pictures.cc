@@ -130,9 +130,9 @@ int MakePictures(const PictureOptions& options) {
 
 }  // namespace
 
-void AddDatasetPictures(const Command& dataset, Action& action) {
+void AddDatasetPictures(const Subcommand& dataset, Action& action) {
   auto options = std::make_shared<PictureOptions>();
-  const Command command = dataset.AddCommand(
+  const Subcommand command = dataset.AddCommand(
       "pictures", "Contact sheets of random labels, each with a hand that made it");
   command.Add("GRASPS", options->grasps, "Merged data set of grasps").Required();
   command.Add("--generator", options->generator, "Weights of the grasp generators").Required();

@@ -176,12 +176,12 @@ int Probe(const ProbeOptions& options) {
 
 }  // namespace
 
-void AddDatasetProbe(const Command& dataset, Action& action) {
+void AddDatasetProbe(const Subcommand& dataset, Action& action) {
   auto options = std::make_shared<ProbeOptions>();
   const fs::path weights = DataFolder() / "assets" / "weights";
   options->score = weights / "score.safetensors";
   options->generator = weights / "generator.safetensors";
-  const Command command =
+  const Subcommand command =
       dataset.AddCommand("probe", "What the learned score says of a scene as its object is moved");
   command.Add("SCENE", options->scene, "The scene, a Lua file").Required();
   command.Add("--score", options->score, "Weights of the score function");

@@ -77,8 +77,8 @@ int Info() {
 
 }  // namespace
 
-void AddInfo(const Command& app, Action& action) {
-  const Command command = app.AddCommand("info", "Versions, OpenGL renderer, weights, processor");
+void AddInfo(const Subcommand& app, Action& action) {
+  const Subcommand command = app.AddCommand("info", "Versions, OpenGL renderer, weights, processor");
   command.OnChosen([&action] { action = [] { return Info(); }; });
 }
 

@@ -23,9 +23,9 @@ int Run(const ReplOptions& options) {
 
 }  // namespace
 
-void AddRepl(const Command& app, Action& action) {
+void AddRepl(const Subcommand& app, Action& action) {
   auto options = std::make_shared<ReplOptions>();
-  const Command command = app.AddCommand("repl", "Lua at a prompt, or from a pipe");
+  const Subcommand command = app.AddCommand("repl", "Lua at a prompt, or from a pipe");
   command.Add("SCENE", options->scene, "Opened as s");
   options->flags.AddTo(command);
   command.OnChosen([options, &action] { action = [options] { return Run(*options); }; });

@@ -1,4 +1,4 @@
-#include "app/pipeline/run.h"
+#include "app/job/run_policy.h"
 
 #include <fmt/core.h>
 
@@ -13,7 +13,6 @@
 #include "app/commands/progress.h"
 #include "app/core/interrupt.h"
 #include "app/job/planner_settings.h"
-#include "app/job/start_verdict.h"
 #include "bindings/scene_file.h"
 #include "bindings/script.h"
 
@@ -41,9 +40,13 @@ std::string CommandLine(const RunOptions& options) {
   return line;
 }
 
-void Print(const RunResult& result, const std::filesystem::path& out) {
+void Print(const Timeline& timeline, const RunResult& result, const std::filesystem::path& out) {
+  for (const auto& node : timeline.nodes()) {
+    const auto* verdict = std::get_if<VerdictFacts>(&node->facts.details);
+    if (verdict != nullptr) fmt::print("{}\n", verdict->sentence);
+  }
   for (const std::string& reason : result.reasons) fmt::print("{}\n", reason);
-  fmt::print("{}: {}\n", out.string(), RunStatusName(result.status));
+  fmt::print("{}: {}\n", out.string(), result.status);
 }
 
 int Run(const RunOptions& options) {
@@ -61,31 +64,25 @@ int Run(const RunOptions& options) {
   SessionConfig session_config;
   session_config.seed = options.seed;
   session_config.threads = options.threads;
-  session_config.remake = CommandLine(options);
+  session_config.command = CommandLine(options);
+  session_config.planner = config;
+  session_config.weights = options.weights.empty() ? DataFolder() / "assets" / "weights"
+                                                   : std::filesystem::path(options.weights);
   Session session(std::move(scene), session_config);
-  const std::filesystem::path weights = options.weights.empty()
-                                            ? DataFolder() / "assets" / "weights"
-                                            : std::filesystem::path(options.weights);
-  const Planner planner(session.shared_world(), session.start(), config, options.seed,
-                        session.pool(), weights);
-  PlanRecord record(session, planner);
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / session.scene().name
                                         : std::filesystem::path(options.out);
   session.Record(out, ParsePictureMode(options.pictures, "--pictures", ""));
   try {
     ProgressLine line;
-    line.Show("start certificate", 0, 1);
-    const StartCertificate start = FindSceneVerdict(session.scene(), options.seed, session.pool());
     const RunResult result =
-        RunPlanner(planner, record, start, options.run, [&](const RunProgress& progress) {
+        RunPlanner(session.timeline(), options.run, [&](const RunProgress& progress) {
           line.Show(progress.stage, progress.done, progress.total);
         });
     line.Show("pictures and log", 0, 1);
-    session.FinishRecording();
-    fmt::print("{}\n", DescribeStart(start));
-    Print(result, out);
-    return result.status == RunStatus::kOk ? 0 : kNoSuccess;
+    session.FinishRecording(std::nullopt, result.end);
+    Print(session.timeline(), result, out);
+    return result.status == "ok" ? 0 : kNoSuccess;
   } catch (const Interrupted&) {
     ClearInterrupt();
     session.FinishRecording("interrupted");
@@ -95,9 +92,9 @@ int Run(const RunOptions& options) {
 
 }  // namespace
 
-void AddRun(const Command& app, Action& action) {
+void AddRun(const Subcommand& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
-  const Command command = app.AddCommand("run", "Plan: from a scene to a grasp and a hand motion");
+  const Subcommand command = app.AddCommand("run", "Plan: from a scene to a grasp and a hand motion");
   command.Add("SCENE", options->scene, "The scene, a Lua file").Required();
   command.AddSeed(options->seed, "Seed of everything random");
   command.Add("--out", options->out,

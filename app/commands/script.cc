@@ -25,9 +25,9 @@ int Run(const ScriptOptions& options) {
 
 }  // namespace
 
-void AddScript(const Command& app, Action& action) {
+void AddScript(const Subcommand& app, Action& action) {
   auto options = std::make_shared<ScriptOptions>();
-  const Command command = app.AddCommand("script", "Run a Lua script");
+  const Subcommand command = app.AddCommand("script", "Run a Lua script");
   command.Add("FILE", options->file, "The script").Required();
   command.Add("ARGS", options->arguments, "What the script gets as ...");
   options->flags.AddTo(command);

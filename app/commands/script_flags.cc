@@ -2,7 +2,7 @@
 
 namespace pregrasp {
 
-void ScriptFlags::AddTo(const Command& command) {
+void ScriptFlags::AddTo(const Subcommand& command) {
   command.AddSeed(config.machine.seed, "Seed of everything random");
   command.Add("--time", config.machine.seconds, "Seconds of Lua; our own calls are not counted")
       .ShowDefault();

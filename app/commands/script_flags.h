@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "app/commands/command.h"
+#include "app/commands/subcommand.h"
 #include "bindings/script.h"
 
 namespace pregrasp {
@@ -12,7 +12,7 @@ struct ScriptFlags {
   ScriptConfig config;
   std::string pictures;
 
-  void AddTo(const Command& command);
+  void AddTo(const Subcommand& command);
 
   /// @param line  the command that does the same again, without these options.
   ScriptConfig Resolve(const std::string& line) const;

@@ -15,10 +15,9 @@ constexpr double kMaxTarget = 1000.0;  // [m], of a coordinate: ten times the la
 
 }  // namespace
 
-Simulation::Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id,
-                       bool traced)
-    : world_(std::move(world)), action_id_(std::move(step_id)), traced_(traced) {
-  past_.push_back(std::make_shared<const Moment>(Moment{std::move(start), {}, action_id_}));
+Simulation::Simulation(std::shared_ptr<const World> world, WorldState start, bool traced)
+    : world_(std::move(world)), traced_(traced) {
+  past_.push_back(std::make_shared<const Moment>(Moment{std::move(start), {}}));
 }
 
 double Simulation::CalcMaxPenetration() const {
@@ -33,12 +32,12 @@ double Simulation::CalcMaxPenetration() const {
 
 void Simulation::ReplaceState(WorldState state) {
   past_.back() =
-      std::make_shared<const Moment>(Moment{std::move(state), past_.back()->trace, action_id_});
+      std::make_shared<const Moment>(Moment{std::move(state), past_.back()->trace});
 }
 
 void Simulation::StepOnce(WorldState state) {
   ThrowIfInterrupted();
-  Moment next{std::move(state), {}, action_id_};
+  Moment next{std::move(state), {}};
   if (traced_) {
     next.trace = world_->StepWithTrace(next.state);
   } else {

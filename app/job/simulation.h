@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "app/dynamics/world.h"
@@ -17,8 +16,7 @@ class Simulation {
 
   /// @param traced  whether each step also tells its energies, for which it takes up to ten times
   /// as long.
-  Simulation(std::shared_ptr<const World> world, WorldState start, std::string step_id,
-             bool traced = false);
+  Simulation(std::shared_ptr<const World> world, WorldState start, bool traced = false);
 
   const World& world() const { return *world_; }
   const WorldState& state() const { return past_.back()->state; }
@@ -38,11 +36,6 @@ class Simulation {
 
   /// The deepest overlap of two bodies before any of the past steps [m].
   double CalcMaxPenetration() const;
-
-  /// The id of the action that led here, or of where it began.
-  const std::string& step_id() const { return past_.back()->step_id; }
-  /// What follows belongs to the action of this id.
-  void BeginAction(const std::string& step_id) { action_id_ = step_id; }
 
   /// Puts a finger on the object at the surface point nearest to p_OC, without force yet.
   void Touch(Finger finger, const Vector3& p_OC);
@@ -67,7 +60,6 @@ class Simulation {
   struct Moment {
     WorldState state;
     StepTrace trace;  ///< its contacts alone where the simulation is not traced
-    std::string step_id;
   };
 
   void StepOnce(WorldState state);
@@ -76,7 +68,6 @@ class Simulation {
 
   std::shared_ptr<const World> world_;
   std::vector<std::shared_ptr<const Moment>> past_;
-  std::string action_id_;
   bool traced_;
 };
 

@@ -5,32 +5,31 @@
 
 namespace pregrasp {
 
-ForceSplit SplitFingerForce(const World& world, const WorldState& state, Finger finger) {
-  const FingertipState& tip = state.fingers[static_cast<int>(finger)];
-  const Vector3 nhat_W = state.bodies[0].q_WB * tip.nhat_O;
+ForceSplit SplitFingerForce(const Scene& scene, const Quaternion& q_WO, const FingerFacts& finger) {
+  const Vector3 nhat_W = q_WO * finger.nhat_O;
   ForceSplit split;
-  split.normal = -tip.f_W.dot(nhat_W);
-  split.tangential = (tip.f_W + split.normal * nhat_W).norm();
-  split.limit = world.scene().fingertips.friction * std::max(0.0, split.normal);
+  split.normal = -finger.f_W.dot(nhat_W);
+  split.tangential = (finger.f_W + split.normal * nhat_W).norm();
+  split.limit = scene.fingertips.friction * std::max(0.0, split.normal);
   return split;
 }
 
-std::vector<SupportForce> CalcSupportForces(const World& world,
-                                            const std::vector<ContactPoint>& contacts) {
+std::vector<SupportForce> CalcSupportForces(const Scene& scene,
+                                            const std::vector<ContactFacts>& contacts) {
   constexpr double kTouch = 1e-3;  // [N]
   constexpr double kUsedUp = 0.99;
-  const std::vector<Body>& bodies = world.scene().bodies;
+  const std::vector<Body>& bodies = scene.bodies;
   std::map<int, SupportForce> by_body;
-  for (const ContactPoint& contact : contacts) {
-    if (contact.body_a != 0) continue;  // the object is body 0, and a < b
-    SupportForce& support = by_body[contact.body_b];
-    support.body = contact.body_b;
+  for (const ContactFacts& contact : contacts) {
+    if (contact.a != 0) continue;  // the object is body 0, and a < b
+    SupportForce& support = by_body[contact.b];
+    support.body = contact.b;
     const double normal = contact.f_W.dot(contact.nhat_W);  // on b, along the normal from a to b
     support.f_W -= contact.f_W;
     support.split.normal += normal;
     support.split.tangential += (contact.f_W - normal * contact.nhat_W).norm();
     support.split.limit +=
-        std::min(bodies[0].friction, bodies[contact.body_b].friction) * std::max(0.0, normal);
+        std::min(bodies[0].friction, bodies[contact.b].friction) * std::max(0.0, normal);
   }
   std::vector<SupportForce> supports;
   for (auto& [body, support] : by_body) {

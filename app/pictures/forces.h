@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "app/dynamics/world.h"
+#include "app/job/step_facts.h"
+#include "app/scene/scene.h"
 
 namespace pregrasp {
 
@@ -13,7 +14,8 @@ struct ForceSplit {
   double limit = 0.0;       ///< [N], what friction can give at this normal force
 };
 
-ForceSplit SplitFingerForce(const World& world, const WorldState& state, Finger finger);
+/// @param q_WO  the object's orientation.
+ForceSplit SplitFingerForce(const Scene& scene, const Quaternion& q_WO, const FingerFacts& finger);
 
 /// What one body of the scene does to the object, over all its contact points.
 struct SupportForce {
@@ -24,7 +26,7 @@ struct SupportForce {
 };
 
 /// Those that press with more than 1 mN, by body.
-std::vector<SupportForce> CalcSupportForces(const World& world,
-                                            const std::vector<ContactPoint>& contacts);
+std::vector<SupportForce> CalcSupportForces(const Scene& scene,
+                                            const std::vector<ContactFacts>& contacts);
 
 }  // namespace pregrasp

@@ -9,7 +9,8 @@
 #include "app/pictures/camera.h"
 #include "app/pictures/finger_stub.h"
 #include "app/pictures/forces.h"
-#include "app/job/motion_measure.h"
+#include "app/pictures/overlay.h"
+#include "app/geometry/signed_distance.h"
 #include "render/hand_bodies.h"
 #include "render/palette.h"
 
@@ -31,27 +32,27 @@ void Append(MatrixX3& points, const MatrixX3& more) {
 void PictureConfig::Validate() const { RenderConfig{width, height, quality}.Validate(); }
 
 struct PictureMaker::Impl {
-  std::shared_ptr<const World> world;
+  Scene scene;
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  // one a body
   Vector3 view_W;          // towards the viewer, in automatic pictures
   MatrixX3 start_focus_W;  // what they show at least: one camera for a strip, while that does
   double metres_per_newton = 0.0;
 
-  RenderCamera ChooseCamera(const PictureConfig& config, const WorldState& state,
+  RenderCamera ChooseCamera(const PictureConfig& config, const StepFacts& step,
                             const PictureOverlay& overlay) const;
-  void AddBodies(RenderScene& scene, const WorldState& state, const PictureOverlay& overlay) const;
-  void AddGhost(RenderScene& scene, const RigidTransform& X_WO, const Rgba& color) const;
-  void AddStartGhost(RenderScene& scene, const WorldState& state, const WorldState& start) const;
-  void AddOverlay(RenderScene& scene, const PictureOverlay& overlay) const;
-  void AddFinger(RenderScene& scene, const WorldState& state, Finger finger,
+  void AddBodies(RenderScene& picture, const StepFacts& step, const PictureOverlay& overlay) const;
+  void AddGhost(RenderScene& picture, const RigidTransform& X_WO, const Rgba& color) const;
+  void AddStartGhost(RenderScene& picture, const StepFacts& step, const StepFacts& start) const;
+  void AddOverlay(RenderScene& picture, const PictureOverlay& overlay) const;
+  void AddFinger(RenderScene& picture, const StepFacts& step, const FingerFacts& finger,
                  const PictureConfig& config) const;
-  void AddArrow(RenderScene& scene, const Vector3& p_W, bool ends_there, const Vector3& f_W,
+  void AddArrow(RenderScene& picture, const Vector3& p_W, bool ends_there, const Vector3& f_W,
                 const Rgba& color, const std::string& name) const;
 };
 
-PictureMaker::PictureMaker(std::shared_ptr<const World> world) : impl_(std::make_unique<Impl>()) {
-  impl_->world = std::move(world);
-  const Scene& scene = impl_->world->scene();
+PictureMaker::PictureMaker(Scene loaded) : impl_(std::make_unique<Impl>()) {
+  impl_->scene = std::move(loaded);
+  const Scene& scene = impl_->scene;
   for (const Body& body : scene.bodies) {
     impl_->meshes.push_back(std::make_shared<const TriangleMesh>(Tessellate(body.shape)));
   }
@@ -68,12 +69,12 @@ PictureMaker::PictureMaker(std::shared_ptr<const World> world) : impl_(std::make
 
 PictureMaker::~PictureMaker() = default;
 
-RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const WorldState& state,
+RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const StepFacts& step,
                                               const PictureOverlay& overlay) const {
-  const auto& fixed = config.camera ? config.camera : world->scene().camera;
+  const auto& fixed = config.camera ? config.camera : scene.camera;
   if (fixed) return {fixed->p_WCam, fixed->p_WTarget, fixed->fov_deg};
   const double aspect = static_cast<double>(config.width) / config.height;
-  MatrixX3 seen_W = TransformPoints(state.bodies[0].X_WB(), meshes[0]->V);
+  MatrixX3 seen_W = TransformPoints(step.object().X_WB(), meshes[0]->V);
   for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
     Append(seen_W, TransformPoints(ghost.X_WO, meshes[0]->V));
   }
@@ -86,51 +87,53 @@ RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const
   return FrameCamera(focus_W, view_W, aspect);
 }
 
-void PictureMaker::Impl::AddBodies(RenderScene& scene, const WorldState& state,
+void PictureMaker::Impl::AddBodies(RenderScene& picture, const StepFacts& step,
                                    const PictureOverlay& overlay) const {
-  const std::vector<RigidTransform> X_WB = world->GetPoses(state);
+  std::size_t movable = 0;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const bool moves = scene.bodies[i].movable();
     RenderBody body;
     body.mesh = meshes[i];
-    body.X_WB = X_WB[i];
+    body.X_WB = moves ? step.bodies.at(movable++).X_WB() : scene.bodies[i].X_WB;
     if (i == 0 && overlay.contact_mesh) {
       body.mesh = overlay.contact_mesh;
       body.face_colors = overlay.face_colors;
       body.edges = true;
       body.smooth = false;
     }
-    const bool movable = world->scene().bodies[i].movable();
-    const Rgba color = i == 0 ? ObjectColor() : movable ? NeighbourColor() : TableColor();
-    scene.bodies.push_back(WithLook(body, color, movable ? 0.5F : 0.7F));
+    const Rgba color = i == 0 ? ObjectColor() : moves ? NeighbourColor() : TableColor();
+    picture.bodies.push_back(WithLook(body, color, moves ? 0.5F : 0.7F));
   }
 }
 
-void PictureMaker::Impl::AddGhost(RenderScene& scene, const RigidTransform& X_WO,
+void PictureMaker::Impl::AddGhost(RenderScene& picture, const RigidTransform& X_WO,
                                   const Rgba& color) const {
   RenderBody body;
   body.mesh = meshes[0];
   body.X_WB = X_WO;
   body.color = color;
   body.shading = Shading::kGhost;
-  scene.bodies.push_back(body);
+  picture.bodies.push_back(body);
 }
 
-void PictureMaker::Impl::AddStartGhost(RenderScene& scene, const WorldState& state,
-                                       const WorldState& start) const {
-  const Motion motion = CalcObjectMotion(*world, start, state);
-  if (motion.moved <= kGhostAfter && motion.rotated <= kGhostTurn) return;
-  AddGhost(scene, start.bodies[0].X_WB(), WithAlpha(ObjectColor(), 0.35F));
+void PictureMaker::Impl::AddStartGhost(RenderScene& picture, const StepFacts& step,
+                                       const StepFacts& start) const {
+  const RigidTransform X_from = start.object().X_WB(), X_to = step.object().X_WB();
+  const Vector3& p_OOcm = scene.object().mass_properties->p_BoBcm;
+  const bool left = (X_to * p_OOcm - X_from * p_OOcm).norm() > kGhostAfter ||
+                    RotationAngle(X_from.linear(), X_to.linear()) > kGhostTurn;
+  if (left) AddGhost(picture, X_from, WithAlpha(ObjectColor(), 0.35F));
 }
 
-void PictureMaker::Impl::AddOverlay(RenderScene& scene, const PictureOverlay& overlay) const {
+void PictureMaker::Impl::AddOverlay(RenderScene& picture, const PictureOverlay& overlay) const {
   for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
-    AddGhost(scene, ghost.X_WO, ghost.color);
+    AddGhost(picture, ghost.X_WO, ghost.color);
   }
-  if (overlay.hand) AddHand(scene, *overlay.hand, overlay.touching);
-  scene.legend = overlay.legend;
+  if (overlay.hand) AddHand(picture, *overlay.hand, overlay.touching);
+  picture.legend = overlay.legend;
 }
 
-void PictureMaker::Impl::AddArrow(RenderScene& scene, const Vector3& p_W, bool ends_there,
+void PictureMaker::Impl::AddArrow(RenderScene& picture, const Vector3& p_W, bool ends_there,
                                   const Vector3& f_W, const Rgba& color,
                                   const std::string& name) const {
   constexpr double kShortest = 0.02, kLongest = 0.10;  // [m]
@@ -139,96 +142,96 @@ void PictureMaker::Impl::AddArrow(RenderScene& scene, const Vector3& p_W, bool e
   const double length = std::clamp(metres_per_newton * force, kShortest, kLongest);
   const Vector3 v_W = f_W * (length / force);
   const Vector3 tail_W = ends_there ? Vector3(p_W - v_W) : p_W;
-  scene.arrows.push_back({tail_W, v_W, 0.0016F, color});
-  scene.labels.push_back({tail_W, fmt::format("{} {:.2f} N", name, force), color});
+  picture.arrows.push_back({tail_W, v_W, 0.0016F, color});
+  picture.labels.push_back({tail_W, fmt::format("{} {:.2f} N", name, force), color});
 }
 
-void PictureMaker::Impl::AddFinger(RenderScene& scene, const WorldState& state, Finger finger,
-                                   const PictureConfig& config) const {
-  const FingertipState& tip = state.fingers[static_cast<int>(finger)];
-  if (!tip.on) return;
-  const Vector3 nhat_W = state.bodies[0].q_WB * tip.nhat_O;
-  const Vector3 to_viewer_W = (scene.camera.p_WCam - tip.p_WF).normalized();
+void PictureMaker::Impl::AddFinger(RenderScene& picture, const StepFacts& step,
+                                   const FingerFacts& finger, const PictureConfig& config) const {
+  if (!finger.on) return;
+  const Vector3 nhat_W = step.object().q_WB * finger.nhat_O;
+  const Vector3 to_viewer_W = (picture.camera.p_WCam - finger.p_WF).normalized();
   if (config.fingers) {
-    for (RenderBody& body : MakeFingerStub(finger, tip.p_WF, nhat_W, to_viewer_W)) {
-      scene.bodies.push_back(std::move(body));
+    for (RenderBody& body : MakeFingerStub(finger.finger, finger.p_WF, nhat_W, to_viewer_W)) {
+      picture.bodies.push_back(std::move(body));
     }
   }
-  if (config.cones && tip.touching) {
+  if (config.cones && finger.touching) {
     RenderCone cone;
-    cone.p_W = tip.p_WF;
+    cone.p_W = finger.p_WF;
     cone.axis_W = 0.035 * nhat_W;
-    cone.half_angle = static_cast<float>(std::atan(world->scene().fingertips.friction));
-    cone.color = WithAlpha(tip.slipping ? BadColor() : GoodColor(), 0.22F);
-    scene.cones.push_back(cone);
+    cone.half_angle = static_cast<float>(std::atan(scene.fingertips.friction));
+    cone.color = WithAlpha(finger.slipping ? BadColor() : GoodColor(), 0.22F);
+    picture.cones.push_back(cone);
   }
   if (config.forces) {
-    AddArrow(scene, tip.p_WF, true, tip.f_W, FingerColor(finger), FingerName(finger));
+    AddArrow(picture, finger.p_WF, true, finger.f_W, FingerColor(finger.finger),
+             FingerName(finger.finger));
   }
 }
 
 namespace {
 
-// What of a stage's overlay is to be shown.
-PictureOverlay Chosen(const PictureOverlay* overlay, const PictureConfig& config) {
-  PictureOverlay chosen = overlay == nullptr ? PictureOverlay{} : *overlay;
-  if (!config.mesh) chosen.contact_mesh = nullptr;
+// What of a step's overlay is to be shown.
+PictureOverlay Chosen(PictureOverlay overlay, const PictureConfig& config) {
+  if (!config.mesh) overlay.contact_mesh = nullptr;
   if (!config.scores) {
-    std::fill(chosen.face_colors.begin(), chosen.face_colors.end(), WithAlpha(ObjectColor(), 1.0F));
-    chosen.legend = {};
+    std::fill(overlay.face_colors.begin(), overlay.face_colors.end(),
+              WithAlpha(ObjectColor(), 1.0F));
+    overlay.legend = {};
   }
-  if (!config.rollouts) chosen.ghosts.clear();
-  if (!config.hand) chosen.hand.reset();
-  return chosen;
+  if (!config.rollouts) overlay.ghosts.clear();
+  if (!config.hand) overlay.hand.reset();
+  return overlay;
 }
 
 // At each contact point the normal and the force: where the object takes part, into it and on it,
 // else into and on the second body. Normals have one length, forces the pictures' scale.
-void AddContactArrows(RenderScene& scene, const std::vector<ContactPoint>& contacts,
+void AddContactArrows(RenderScene& picture, const std::vector<ContactFacts>& contacts,
                       double metres_per_newton) {
   constexpr double kNormalLength = 0.012;             // [m]
   constexpr float kThin = 0.0005F, kThick = 0.0012F;  // [m]
-  for (const ContactPoint& contact : contacts) {
-    const double sign = contact.body_a == 0 ? -1.0 : 1.0;
-    scene.arrows.push_back(
-        {contact.p_WC, sign * kNormalLength * contact.nhat_W, kThin, NeutralColor()});
+  for (const ContactFacts& contact : contacts) {
+    const double sign = contact.a == 0 ? -1.0 : 1.0;
+    picture.arrows.push_back(
+        {contact.p_W, sign * kNormalLength * contact.nhat_W, kThin, NeutralColor()});
     const Vector3 v_W = sign * metres_per_newton * contact.f_W;
-    if (v_W.norm() > 1e-3) scene.arrows.push_back({contact.p_WC, v_W, kThick, GoodColor()});
+    if (v_W.norm() > 1e-3) picture.arrows.push_back({contact.p_W, v_W, kThick, GoodColor()});
   }
 }
 
 }  // namespace
 
-RenderScene PictureMaker::Compose(const WorldState& state,
-                                  const std::vector<ContactPoint>& contacts,
-                                  const WorldState& start, const PictureOverlay* stage_overlay,
+RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& steps,
                                   const PictureText& text, const PictureConfig& config) const {
   config.Validate();
-  const PictureOverlay overlay = Chosen(stage_overlay, config);
-  RenderScene scene;
-  scene.camera = impl_->ChooseCamera(config, state, overlay);
-  impl_->AddBodies(scene, state, overlay);
-  if (config.ghost) impl_->AddStartGhost(scene, state, start);
-  for (int i = 0; i < kNumFingers && !overlay.hand; ++i) {
-    impl_->AddFinger(scene, state, static_cast<Finger>(i), config);
-  }
-  impl_->AddOverlay(scene, overlay);
-  if (config.contacts) {
-    for (const ContactPoint& contact : contacts) {
-      if (contact.body_a != 0 || contact.f_W.norm() < 1e-3) continue;
-      scene.points.push_back({contact.p_WC, 0.0022F, NeutralColor()});
+  const PictureOverlay overlay = Chosen(MakeOverlay(step, steps), config);
+  const Scene& scene = impl_->scene;
+  RenderScene picture;
+  picture.camera = impl_->ChooseCamera(config, step, overlay);
+  impl_->AddBodies(picture, step, overlay);
+  if (config.ghost) impl_->AddStartGhost(picture, step, FindStart(step, steps));
+  if (!overlay.hand) {
+    for (const FingerFacts& finger : step.fingers) {
+      impl_->AddFinger(picture, step, finger, config);
     }
   }
-  if (config.trace) AddContactArrows(scene, contacts, impl_->metres_per_newton);
-  if (config.forces && overlay.forces) {
-    const Body& object = impl_->world->scene().object();
-    const Vector3 p_WBcm = state.bodies[0].X_WB() * object.mass_properties->p_BoBcm;
-    const Vector3 weight_W = object.mass_properties->mass * impl_->world->scene().gravity;
-    impl_->AddArrow(scene, p_WBcm, false, weight_W, NeutralColor(), "weight");
+  impl_->AddOverlay(picture, overlay);
+  if (config.contacts) {
+    for (const ContactFacts& contact : step.contacts) {
+      if (contact.a != 0 || contact.f_W.norm() < 1e-3) continue;
+      picture.points.push_back({contact.p_W, 0.0022F, NeutralColor()});
+    }
   }
-  scene.axes = config.axes;
-  scene.caption = {text.title, text.lines, text.footer, -1.0};
-  return scene;
+  if (config.trace) AddContactArrows(picture, step.contacts, impl_->metres_per_newton);
+  if (config.forces && overlay.forces) {
+    const MassProperties& mass = *scene.object().mass_properties;
+    impl_->AddArrow(picture, step.object().X_WB() * mass.p_BoBcm, false,
+                    mass.mass * scene.gravity, NeutralColor(), "weight");
+  }
+  picture.axes = config.axes;
+  picture.caption = {text.title, text.lines, text.footer, -1.0};
+  return picture;
 }
 
 }  // namespace pregrasp

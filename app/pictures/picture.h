@@ -1,13 +1,12 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/dynamics/world.h"
-#include "app/hand/hand_model.h"
+#include "app/job/step_facts.h"
+#include "app/scene/scene.h"
 #include "render/renderer.h"
 
 namespace pregrasp {
@@ -34,26 +33,6 @@ struct PictureConfig {
   void Validate() const;
 };
 
-/// What a planning stage adds to a picture of the world.
-struct PictureOverlay {
-  /// The contact mesh, in O, in place of the object; one colour a triangle.
-  std::shared_ptr<const TriangleMesh> contact_mesh;
-  std::vector<Rgba> face_colors;
-  /// The object at other times or in other plans.
-  struct Ghost {
-    RigidTransform X_WO = RigidTransform::Identity();
-    Rgba color;
-  };
-  std::vector<Ghost> ghosts;
-  std::optional<HandConfiguration> hand;  ///< the whole hand, in place of the two fingers
-  /// Fingers of the hand that touch: their last links get the finger's colour.
-  std::array<bool, kNumFingers> touching{};
-  bool forces = true;  ///< false: no physics happens here, so no forces are drawn
-  RenderLegend legend;
-  /// What the picture shows at least, in automatic pictures (#points x 3, world).
-  MatrixX3 focus_W = MatrixX3(0, 3);
-};
-
 /// The words of a picture.
 struct PictureText {
   std::string title;
@@ -61,16 +40,16 @@ struct PictureText {
   std::string footer;
 };
 
-/// Turns states of one world into pictures' contents. Holds the meshes, which pictures share.
+/// Turns steps of one scene into pictures' contents: a function of the step's facts, of the steps before it
+/// and of the scene. Holds the meshes, which pictures share.
 class PictureMaker {
  public:
-  explicit PictureMaker(std::shared_ptr<const World> world);
+  /// @param scene  loaded.
+  explicit PictureMaker(Scene scene);
   ~PictureMaker();
 
-  /// @param start  where the ghost is.  @param overlay  null for none.
-  RenderScene Compose(const WorldState& state, const std::vector<ContactPoint>& contacts,
-                      const WorldState& start, const PictureOverlay* overlay,
-                      const PictureText& text, const PictureConfig& config) const;
+  RenderScene Compose(const StepFacts& step, const FactsSource& steps, const PictureText& text,
+                      const PictureConfig& config) const;
 
  private:
   struct Impl;

@@ -16,8 +16,10 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
-#include "app/recording/gzip_file.h"
 #include "app/core/json_text.h"
+#include "app/job/facts_json.h"
+#include "app/recording/gzip_file.h"
+#include "app/recording/run_directory.h"
 
 namespace pregrasp {
 namespace {
@@ -31,6 +33,10 @@ using mrpt::obs::CSensoryFrame;
 constexpr char kPosePrefix[] = "pose_";
 constexpr char kContactsLabel[] = "contacts";
 constexpr char kPictureLabel[] = "picture";
+constexpr char kHandPoseLabel[] = "pose_hand_palm";
+constexpr char kJointsLabel[] = "hand_joints";
+constexpr char kGraspLabel[] = "grasp";
+constexpr double kSamePose = 1e-12;  // of a matrix's entries
 
 // The channels of the "contacts" observation for each finger of the step, in its order.
 constexpr std::array<const char*, 10> kChannels{"on",         "p_OC_x",     "p_OC_y",     "p_OC_z",
@@ -65,28 +71,64 @@ std::shared_ptr<Observation> NewObservation(const std::string& label, double t) 
   return observation;
 }
 
-CObservationRobotPose::Ptr NewPose(const StepRecord::BodyPose& body, double t) {
-  auto pose = NewObservation<CObservationRobotPose>(kPosePrefix + body.name, t);
-  pose->pose.mean = ToPose(body.X_WB);
+CObservationRobotPose::Ptr NewPose(const std::string& label, const RigidTransform& X, double t) {
+  auto pose = NewObservation<CObservationRobotPose>(label, t);
+  pose->pose.mean = ToPose(X);
   pose->pose.cov.setZero();
   return pose;
 }
 
-CObservationRawDAQ::Ptr NewContacts(const StepRecord& step) {
-  auto contacts = NewObservation<CObservationRawDAQ>(kContactsLabel, step.t);
-  std::vector<double>& channels = contacts->AIN_double;
-  for (const StepRecord::FingerContact& finger : step.fingers) {
-    channels.push_back(finger.on ? 1.0 : 0.0);
-    for (const Vector3& v : {finger.p_OC, finger.p_WTarget, finger.f_W}) {
-      channels.insert(channels.end(), v.data(), v.data() + 3);
-    }
-  }
+CObservationRawDAQ::Ptr NewChannels(const std::string& label, std::vector<double> channels,
+                                    double t) {
+  auto daq = NewObservation<CObservationRawDAQ>(label, t);
   // Without this, rawlog-edit exports nothing.
-  contacts->AIN_channel_count = static_cast<std::uint16_t>(channels.size());
-  return contacts;
+  daq->AIN_channel_count = static_cast<std::uint16_t>(channels.size());
+  daq->AIN_double = std::move(channels);
+  return daq;
 }
 
-CObservationImage::Ptr NewPicture(const StepRecord& step, int number) {
+void Append(std::vector<double>& channels, const Vector3& v) {
+  channels.insert(channels.end(), v.data(), v.data() + 3);
+}
+
+std::vector<double> ContactChannels(const StepFacts& step) {
+  std::vector<double> channels;
+  for (const FingerFacts& finger : step.fingers) {
+    channels.push_back(finger.on ? 1.0 : 0.0);
+    for (const Vector3& v : {finger.p_OC, finger.p_WTarget, finger.f_W}) Append(channels, v);
+  }
+  return channels;
+}
+
+// Of each finger: whether the grasp uses it, contact, outward normal, force, in O.
+std::vector<double> GraspChannels(const GraspFacts& grasp) {
+  std::vector<double> channels;
+  for (int f = 0; f < kNumFingers; ++f) {
+    GraspContactFacts contact;
+    contact.nhat_O.setZero();
+    bool used = false;
+    for (const GraspContactFacts& candidate : grasp.contacts) {
+      if (static_cast<int>(candidate.finger) != f) continue;
+      contact = candidate;
+      used = true;
+    }
+    channels.push_back(used ? 1.0 : 0.0);
+    for (const Vector3& v : {contact.p_OC, contact.nhat_O, contact.f_O}) Append(channels, v);
+  }
+  return channels;
+}
+
+// The hand that a step shows; null for none.
+const HandFacts* FindHand(const StepFacts& step) {
+  if (const auto* grasp = std::get_if<GraspFacts>(&step.details)) {
+    return grasp->hand ? &*grasp->hand : nullptr;
+  }
+  if (const auto* lift = std::get_if<LiftFacts>(&step.details)) return &lift->hand;
+  if (const auto* frame = std::get_if<FrameFacts>(&step.details)) return &frame->hand;
+  return nullptr;
+}
+
+CObservationImage::Ptr NewPicture(const StepFacts& step, int number) {
   auto picture = NewObservation<CObservationImage>(kPictureLabel, step.t);
   picture->image.setExternalStorage(PictureName(number, step.id));
   return picture;
@@ -124,12 +166,23 @@ RawlogWriter::RawlogWriter(const std::filesystem::path& file, const nlohmann::or
 
 RawlogWriter::~RawlogWriter() = default;
 
-void RawlogWriter::Add(const StepRecord& step, int number) {
+void RawlogWriter::Add(const StepFacts& step, int number, const std::string& line) {
   CSensoryFrame frame;
-  for (const StepRecord::BodyPose& body : step.bodies) frame.insert(NewPose(body, step.t));
-  if (!step.fingers.empty()) frame.insert(NewContacts(step));
+  for (const BodyFacts& body : step.bodies) {
+    frame.insert(NewPose(kPosePrefix + body.name, body.X_WB(), step.t));
+  }
+  if (!step.fingers.empty()) {
+    frame.insert(NewChannels(kContactsLabel, ContactChannels(step), step.t));
+  }
+  if (const HandFacts* hand = FindHand(step)) {
+    frame.insert(NewPose(kHandPoseLabel, hand->configuration().X_WH, step.t));
+    frame.insert(NewChannels(kJointsLabel, hand->joints, step.t));
+  }
+  if (const auto* grasp = std::get_if<GraspFacts>(&step.details)) {
+    frame.insert(NewChannels(kGraspLabel, GraspChannels(*grasp), step.t));
+  }
   frame.insert(NewPicture(step, number));
-  frame.insert(NewComment(step.t, FormatJson(StepToJson(step, number))));
+  frame.insert(NewComment(step.t, line));
   // rawlog-edit takes a log of frames alone for one single object; pairs work everywhere.
   impl_->Write(mrpt::obs::CActionCollection());
   impl_->Write(frame);
@@ -145,10 +198,10 @@ class FrameReader {
   FrameReader(const CSensoryFrame& frame, std::string where)
       : frame_(frame), where_(std::move(where)) {}
 
-  StepRecord ReadStep() const {
+  StepFacts ReadStep() const {
     const auto comment = frame_.getObservationByClass<CObservationComment>();
     Require(comment != nullptr, "a comment");
-    StepRecord step = StepFromJson(ParseJson(comment->text, where_), where_);
+    StepFacts step = FactsFromJson(ParseJson(comment->text, where_), where_);
     for (const auto& observation : frame_) {
       Require(
           std::abs(mrpt::Clock::toDouble(observation->timestamp) - kRawlogEpoch - step.t) < 1e-6,
@@ -156,11 +209,13 @@ class FrameReader {
     }
     for (std::size_t i = 0; i < step.bodies.size(); ++i) {
       const auto pose = frame_.getObservationByClass<CObservationRobotPose>(i);
-      Require(pose && pose->sensorLabel == kPosePrefix + step.bodies[i].name,
-              "a pose for each body of the comment");
-      step.bodies[i].X_WB = FromPose(pose->pose.mean);
+      Require(pose && pose->sensorLabel == kPosePrefix + step.bodies[i].name &&
+                  (FromPose(pose->pose.mean).matrix() - step.bodies[i].X_WB().matrix())
+                          .cwiseAbs()
+                          .maxCoeff() < kSamePose,
+              "the pose of each body of the comment");
     }
-    if (!step.fingers.empty()) ReadContacts(step);
+    if (!step.fingers.empty()) CheckContacts(step);
     return step;
   }
 
@@ -175,19 +230,12 @@ class FrameReader {
     if (!condition) throw InputError(where_, "", expected, "none");
   }
 
-  void ReadContacts(StepRecord& step) const {
+  void CheckContacts(const StepFacts& step) const {
     const auto contacts = frame_.getObservationByClass<CObservationRawDAQ>();
-    Require(contacts && contacts->AIN_double.size() == kChannels.size() * step.fingers.size() &&
+    Require(contacts && contacts->sensorLabel == kContactsLabel &&
+                contacts->AIN_double == ContactChannels(step) &&
                 contacts->AIN_channel_count == contacts->AIN_double.size(),
-            "contact channels for each finger of the comment");
-    const double* channel = contacts->AIN_double.data();
-    for (StepRecord::FingerContact& finger : step.fingers) {
-      finger.on = *channel++ != 0.0;
-      for (Vector3* v : {&finger.p_OC, &finger.p_WTarget, &finger.f_W}) {
-        *v = Vector3(channel[0], channel[1], channel[2]);
-        channel += 3;
-      }
-    }
+            "the contact channels of each finger of the comment");
   }
 
   const CSensoryFrame& frame_;

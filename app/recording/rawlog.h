@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/recording/step_record.h"
+#include "app/job/step_facts.h"
 
 namespace pregrasp {
 
@@ -23,7 +23,8 @@ class RawlogWriter {
   ~RawlogWriter();
 
   /// Appends step `number` (from 1): an empty CActionCollection and a CSensoryFrame.
-  void Add(const StepRecord& step, int number);
+  /// @param line  the step's line of steps.jsonl.
+  void Add(const StepFacts& step, int number, const std::string& line);
   void Close();
 
  private:
@@ -34,14 +35,13 @@ class RawlogWriter {
 /// A log read back through MRPT.
 struct Rawlog {                   // NOLINT(bugprone-exception-escape): moving JSON does not throw
   nlohmann::json header;          ///< the global comment
-  std::vector<StepRecord> steps;  ///< poses and contacts from the typed observations, the rest from
-                                  ///< each step's comment
+  std::vector<StepFacts> steps;   ///< from each step's comment
   std::vector<std::string> pictures;  ///< of each step, as MRPT names the file, relative to the
                                       ///< folder of images
 };
 
 /// @throws InputError if the file cannot be read, is damaged, is not what RawlogWriter writes, or
-/// if a step's observations and its comment contradict each other.
+/// if a step's typed observations and its comment contradict each other.
 Rawlog LoadRawlog(const std::filesystem::path& file);
 
 }  // namespace pregrasp

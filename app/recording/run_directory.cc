@@ -1,11 +1,14 @@
 #include "app/recording/run_directory.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <utility>
 
 #include "app/core/check.h"
 #include "app/core/sha256.h"
+#include "app/job/facts_json.h"
 #include "app/recording/build_info.h"
 #include "app/recording/checked_file.h"
 #include "app/core/json_text.h"
@@ -36,13 +39,15 @@ Json ManifestFields(const RunInfo& info, const nlohmann::json& configuration) {
   return {{"planner_version", ProgramVersion()},
           {"git_hash", GitHash()},
           {"libraries", libraries},
+          {"command", info.command},
+          {"scene_file", info.scene_file},
           {"seed", info.seed},
           {"configuration", configuration}};
 }
 
 bool IsStepId(const std::string& id) {
   return !id.empty() && std::all_of(id.begin(), id.end(), [](unsigned char c) {
-    return std::isalnum(c) || c == '.' || c == '_' || c == '-';
+    return std::isalnum(c) || c == '.' || c == '_' || c == '-' || c == '~';
   });
 }
 
@@ -61,6 +66,7 @@ struct RunDirectory::Impl {
         directory(path),
         partial(path),
         steps(partial.path() / "steps.jsonl"),
+        journal(partial.path() / "journal.jsonl"),
         rollout(partial.path() / "rollout.csv"),
         rawlog(partial.path() / "run.rawlog", RawlogHeader(scene, info)) {}
 
@@ -68,7 +74,7 @@ struct RunDirectory::Impl {
   RunInfo info;
   fs::path directory;
   PartialDirectory partial;
-  CheckedFile steps, rollout;
+  CheckedFile steps, journal, rollout;
   RawlogWriter rawlog;
   int num_steps = 0;
 };
@@ -85,18 +91,28 @@ RunDirectory::~RunDirectory() = default;
 const fs::path& RunDirectory::partial() const { return impl_->partial.path(); }
 const fs::path& RunDirectory::directory() const { return impl_->directory; }
 
-fs::path RunDirectory::NextPicture(const std::string& step_id) const {
-  const fs::path frames = partial() / "frames";
-  MakeFolder(frames);
-  return frames / PictureName(impl_->num_steps + 1, step_id);
+std::string PictureName(int number, const std::string& id) {
+  std::string name = id;
+  std::replace(name.begin(), name.end(), '.', '-');
+  return fmt::format("{:04}_{}.png", number, name);
 }
 
-void RunDirectory::AddStep(const StepRecord& step) {
+fs::path RunDirectory::PictureFile(int number, const std::string& step_id) const {
+  const fs::path frames = partial() / "frames";
+  MakeFolder(frames);
+  return frames / PictureName(number, step_id);
+}
+
+int RunDirectory::AddStep(const StepFacts& step) {
   PREGRASP_CHECK(IsStepId(step.id), step.id);
-  const int number = impl_->num_steps + 1;
-  impl_->steps.Write(FormatJson(StepToJson(step, number)) + '\n');
-  impl_->rawlog.Add(step, number);
-  impl_->num_steps = number;
+  const int number = ++impl_->num_steps;
+  const std::string line = FormatJson(FactsToJson(step, number));
+  impl_->steps.Write(line + '\n');
+  impl_->rawlog.Add(step, number, line);
+  Json command = {{"id", step.id}};
+  command.update(CommandToJson(step.command));
+  impl_->journal.Write(FormatJson(command) + '\n');
+  return number;
 }
 
 void RunDirectory::AddRolloutRow(const WorldState& state) {
@@ -108,18 +124,17 @@ void RunDirectory::AddRolloutRow(const WorldState& state) {
   impl_->rollout.Write(RolloutRow(state));
 }
 
-void RunDirectory::Finish(const nlohmann::json& summary, const nlohmann::json& configuration) {
+void RunDirectory::Finish(RunSummary summary, const nlohmann::json& configuration) {
   impl_->steps.Close();
+  impl_->journal.Close();
   impl_->rollout.Close();
   impl_->rawlog.Close();
   // MRPT's tools look for a log's pictures in <name of the log>_Images.
   std::error_code error;
   if (fs::exists(partial() / "frames", error)) MakeLink(partial() / "run_Images", "frames");
-  const std::string hash =
-      Sha256(ReadFile(partial() / "rollout.csv") + ReadIfThere(partial() / "motion.csv"));
-  WriteFile(partial() / "summary.json",
-            FormatJsonIndented(
-                BuildSummary(summary, impl_->scene, impl_->info.seed, impl_->info.dt, hash)));
+  summary.hash = Sha256(ReadFile(partial() / "rollout.csv") + ReadIfThere(partial() / "lift.csv") +
+                        ReadIfThere(partial() / "motion.csv"));
+  WriteSummary(partial() / "summary.json", summary);
   WriteManifest(partial(), ManifestFields(impl_->info, configuration));
   impl_->partial.Commit();
 }

@@ -6,10 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "app/dynamics/world.h"
-#include "app/recording/step_record.h"
+#include "app/job/run_summary.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {
@@ -21,7 +20,13 @@ struct RunInfo {
   /// Versions of libraries this folder cannot ask for itself ("simbody", "fcl", "assimp", "mesa");
   /// added to those it can (BuildLibraries).
   std::map<std::string, std::string> libraries;
+  std::string command;     ///< the command line that makes the run again; may be empty
+  std::string scene_file;  ///< as the user gave it; may be empty
 };
+
+/// The name under frames/ of the picture of step `number` (from 1): 1 and "scene.start" give
+/// "0001_scene-start.png".
+std::string PictureName(int number, const std::string& id);
 
 /// Writes a run directory (app/recording/README.md has every file's schema). All goes to
 /// DIR.partial, and Finish puts that in the place of DIR in one rename, so that DIR is absent, the
@@ -44,37 +49,25 @@ class RunDirectory {
   const std::filesystem::path& partial() const;
   const std::filesystem::path& directory() const;
 
-  /// Where the picture of the step that AddStep records next belongs: partial()/frames/NNNN_ID.png.
-  /// The folder is made.
-  std::filesystem::path NextPicture(const std::string& step_id) const;
+  /// Where the picture of a step belongs: partial()/frames/NNNN_ID.png. The folder is made.
+  std::filesystem::path PictureFile(int number, const std::string& step_id) const;
 
-  /// Appends the step to run.rawlog (a CActionCollection and a CSensoryFrame) and to steps.jsonl.
-  void AddStep(const StepRecord& step);
+  /// Appends the step to run.rawlog (a CActionCollection and a CSensoryFrame), to steps.jsonl, and its command
+  /// to journal.jsonl. @returns its number, from 1.
+  int AddStep(const StepFacts& step);
 
   /// Appends one row to rollout.csv. `state` is one of a world of this scene.
   void AddRolloutRow(const WorldState& state);
 
   /// Writes summary.json and manifest.json, closes everything and puts the run at DIR. Also for an
   /// interrupted run, with status "interrupted": what was recorded until then is a valid run.
-  /// @param summary        any of the fields of summary.json, nested as there; those left out
-  /// become null, but for scene, seed, within_rules, physics {mu_tip, max_force_N, dt} and hash,
-  /// which are known here.
+  /// @param summary        its hash is filled in here.
   /// @param configuration  the resolved configuration, for manifest.json.
-  void Finish(const nlohmann::json& summary, const nlohmann::json& configuration);
+  void Finish(RunSummary summary, const nlohmann::json& configuration);
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// A run directory read back.
-struct LoadedRun {  // NOLINT(bugprone-exception-escape): moving JSON does not throw
-  nlohmann::json summary, manifest, scene;
-  std::vector<StepRecord> steps;
-};
-
-/// @throws InputError if `directory` is not a finished run or a file of it cannot be read. Does not
-/// compare hashes: see VerifyManifest.
-LoadedRun LoadRun(const std::filesystem::path& directory);
 
 }  // namespace pregrasp

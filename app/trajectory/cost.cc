@@ -26,6 +26,20 @@ ScoredState MakeScoredState(const World& world, const WorldState& state) {
 
 }  // namespace
 
+std::span<const CostTerm> CostTerms() {
+  static constexpr CostTerm kTerms[] = {
+      {"no_contact", &PlanCost::no_contact, &CostWeights::no_contact},
+      {"slip", &PlanCost::slip, &CostWeights::slip},
+      {"effort", &PlanCost::effort, &CostWeights::effort},
+      {"unrest", &PlanCost::unrest, &CostWeights::unrest},
+      {"speed", &PlanCost::speed, &CostWeights::speed},
+      {"tip_overlap", &PlanCost::tip_overlap, &CostWeights::tip_overlap},
+      {"tip_spacing", &PlanCost::tip_spacing, &CostWeights::tip_spacing},
+      {"fall", &PlanCost::fall, &CostWeights::fall},
+  };
+  return kTerms;
+}
+
 std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& outcome) {
   std::vector<ScoredState> states;
   for (const WorldState& state : outcome.stage_starts) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "app/graph/placement.h"
@@ -29,6 +30,15 @@ struct PlanCost {
   double tip_overlap = 0.0, tip_spacing = 0.0, fall = 0.0;
   double total = 0.0;
 };
+
+/// A penalty's name, what a plan has of it, and its weight: the one table of them, which records, pictures
+/// and scripts read.
+struct CostTerm {
+  const char* name;
+  double PlanCost::*value;
+  double CostWeights::*weight;
+};
+std::span<const CostTerm> CostTerms();
 
 /// The states whose scores the cost of `outcome` needs: each stage's start.
 std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& outcome);

@@ -18,13 +18,6 @@ void RequireRange(const char* field, double value, double low, double high) {
   }
 }
 
-// Sigma falls geometrically from the first iteration to the last.
-double SigmaAt(const MppiConfig& config, int iteration) {
-  if (config.iterations <= 1) return config.sigma;
-  const double s = std::min(1.0, static_cast<double>(iteration) / (config.iterations - 1));
-  return config.sigma * std::pow(config.final_sigma / config.sigma, s);
-}
-
 }  // namespace
 
 void MppiConfig::Validate() const {
@@ -48,6 +41,12 @@ Mppi::Mppi(const MppiProblem& problem, const MppiConfig& config)
   config.Validate();
 }
 
+double Mppi::CalcSigma(int iteration) const {
+  if (config_.iterations <= 1) return config_.sigma;
+  const double s = std::min(1.0, static_cast<double>(iteration) / (config_.iterations - 1));
+  return config_.sigma * std::pow(config_.final_sigma / config_.sigma, s);
+}
+
 MppiState Mppi::Start() const {
   MppiState state;
   state.mean.assign(space_.size(), 0.0);
@@ -61,7 +60,7 @@ PlanOutcome Mppi::Simulate(const std::vector<double>& action) const {
 }
 
 std::vector<std::vector<double>> Mppi::SampleActions(const MppiState& state) const {
-  const double sigma = SigmaAt(config_, state.iteration);
+  const double sigma = CalcSigma(state.iteration);
   std::vector<std::vector<double>> actions(config_.samples, state.mean);
   for (int i = 1; i < config_.samples; ++i) {
     if (i == 1 && !state.best_action.empty()) {

@@ -76,6 +76,10 @@ class Mppi {
   /// Decodes and simulates one action again, e.g. the winner.
   PlanOutcome Simulate(const std::vector<double>& action) const;
 
+  RelativePlan Decode(const std::vector<double>& action) const { return space_.Decode(action); }
+  /// Standard deviation of the noise in `iteration`, from 0: falls geometrically from the first to the last.
+  double CalcSigma(int iteration) const;
+
   const MppiConfig& config() const { return config_; }
   const MppiProblem& problem() const { return problem_; }
 

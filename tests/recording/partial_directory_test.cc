@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "app/core/error.h"
+#include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
 #include "tests/recording/sample_run.h"
 

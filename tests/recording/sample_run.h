@@ -77,20 +77,30 @@ inline Scene SampleScene(std::uint64_t seed = 1) {
 }
 
 /// Step `i` of a run of SampleScene.
-inline StepRecord SampleStep(int i, std::uint64_t seed = 1) {
+inline StepFacts SampleStep(int i, std::uint64_t seed = 1) {
   Rng rng(seed, RngStream::kTest, static_cast<std::uint32_t>(i));
-  StepRecord step;
+  StepFacts step;
   step.id = "sim." + std::to_string(i);
-  step.stage = "sim";
+  step.command = {Verb::kWait, "scene.start", {{"steps", i}, {"note", "\"quoted\", line\nbreak, \xc3\xa9"}}};
   step.t = i / 240.0;
-  for (const char* name : {"object", "tool", "tool_2"})
-    step.bodies.push_back({name, RandomPose(rng)});
-  for (const Finger finger : {Finger::kThumb, Finger::kIndex}) {
-    step.fingers.push_back(
-        {finger, i % 2 == 0, RandomVector(rng), RandomVector(rng), RandomVector(rng)});
+  for (const char* name : {"object", "tool", "tool_2"}) {
+    const RigidTransform X_WB = RandomPose(rng);
+    step.bodies.push_back({name, X_WB.translation(), Quaternion(X_WB.linear()), RandomVector(rng),
+                           RandomVector(rng)});
   }
-  step.details = {
-      {"cost", rng.Normal()}, {"sweeps", i}, {"note", "\"quoted\", line\nbreak, \xc3\xa9"}};
+  for (const Finger finger : {Finger::kThumb, Finger::kIndex}) {
+    FingerFacts facts;
+    facts.finger = finger;
+    facts.on = i % 2 == 0;
+    facts.p_OC = RandomVector(rng);
+    facts.p_WTarget = RandomVector(rng);
+    facts.f_W = RandomVector(rng);
+    step.fingers.push_back(facts);
+  }
+  SimulationFacts details;
+  details.physics_steps = i;
+  details.moved_mm = rng.Normal();
+  step.details = details;
   return step;
 }
 
@@ -127,12 +137,16 @@ inline void WriteSampleRun(const std::filesystem::path& directory, int steps = 5
   info.libraries = {{"simbody", "3.7"}};
   RunDirectory run(directory, SampleScene(seed), info);
   for (int i = 0; i < steps; ++i) {
-    const StepRecord step = SampleStep(i, seed);
-    if (pictures) WriteFile(run.NextPicture(step.id), kOnePixelPng);
-    run.AddStep(step);
+    const StepFacts step = SampleStep(i, seed);
+    const int number = run.AddStep(step);
+    if (pictures) WriteFile(run.PictureFile(number, step.id), kOnePixelPng);
     run.AddRolloutRow(SampleState(i, seed));
   }
-  run.Finish({{"status", "interrupted"}}, {{"mppi", {{"samples", 128}}}});
+  RunSummary summary;
+  summary.scene = "sample";
+  summary.seed = seed;
+  summary.status = "interrupted";
+  run.Finish(summary, {{"mppi", {{"samples", 128}}}});
 }
 
 }  // namespace pregrasp

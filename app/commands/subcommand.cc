@@ -1,0 +1,68 @@
+#include "app/commands/subcommand.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace pregrasp {
+
+Option Option::Required() const { return Option(*option_->required()); }
+
+Option Option::ShowDefault() const { return Option(*option_->capture_default_str()); }
+
+Option Option::Within(int least, int most) const {
+  return Option(*option_->check(CLI::Range(least, most)));
+}
+
+Option Option::OneAtATime() const { return Option(*option_->allow_extra_args(false)); }
+
+Option Option::CommaSeparated(int elements) const {
+  return Option(*option_->delimiter(',')->expected(elements));
+}
+
+Subcommand Subcommand::AddCommand(const std::string& name, const std::string& text) const {
+  return Subcommand(*app_->add_subcommand(name, text));
+}
+
+void Subcommand::RequireCommand() const { app_->require_subcommand(1); }
+
+template <typename Value>
+Option Subcommand::Add(const std::string& name, Value& value, const std::string& text) const {
+  return Option(*app_->add_option(name, value, text));
+}
+
+Option Subcommand::AddFlag(const std::string& name, bool& value, const std::string& text) const {
+  return Option(*app_->add_flag(name, value, text));
+}
+
+Option Subcommand::AddSeed(std::uint64_t& seed, const std::string& text) const {
+  const CLI::Validator digits(
+      [](const std::string& value) {
+        const bool whole = !value.empty() && std::all_of(value.begin(), value.end(), [](char c) {
+          return c >= '0' && c <= '9';
+        });
+        return whole ? std::string() : "expected a whole number from 0, got \"" + value + '"';
+      },
+      "N", "seed");
+  return Option(*app_->add_option("--seed", seed, text)->capture_default_str()->check(digits));
+}
+
+void Subcommand::OnChosen(const std::function<void()>& action) const { app_->callback(action); }
+
+// What an option can be.
+#define PREGRASP_OPTION_VALUE(...) \
+  template Option Subcommand::Add(const std::string&, __VA_ARGS__&, const std::string&) const
+PREGRASP_OPTION_VALUE(int);
+PREGRASP_OPTION_VALUE(std::int64_t);
+PREGRASP_OPTION_VALUE(double);
+PREGRASP_OPTION_VALUE(std::string);
+PREGRASP_OPTION_VALUE(std::optional<std::string>);
+PREGRASP_OPTION_VALUE(std::filesystem::path);
+PREGRASP_OPTION_VALUE(std::vector<double>);
+PREGRASP_OPTION_VALUE(std::vector<std::string>);
+PREGRASP_OPTION_VALUE(std::vector<std::filesystem::path>);
+#undef PREGRASP_OPTION_VALUE
+
+}  // namespace pregrasp

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace pregrasp {
+
+/// One option or argument, to be described further.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+
+  Option Required() const;
+  /// The help says the default.
+  Option ShowDefault() const;
+  /// A whole number from `least` to `most`.
+  Option Within(int least, int most) const;
+  /// A list takes one element each time that the option is given, else all that follow it.
+  Option OneAtATime() const;
+  /// A list of so many elements, which may be one word with commas.
+  Option CommaSeparated(int elements) const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// The command line's description: the program or one of its subcommands. CLI11 stays behind it,
+/// because its header takes the compiler three seconds for every file.
+class Subcommand {
+ public:
+  explicit Subcommand(CLI::App& app) : app_(&app) {}
+
+  Subcommand AddCommand(const std::string& name, const std::string& text) const;
+  /// One of the subcommands must be given.
+  void RequireCommand() const;
+
+  /// An option, or an argument if `name` does not begin with a dash. `value` outlives the parsing.
+  /// @tparam Value  one of those at the end of command.cc.
+  template <typename Value>
+  Option Add(const std::string& name, Value& value, const std::string& text) const;
+  Option AddFlag(const std::string& name, bool& value, const std::string& text) const;
+  /// --seed, a whole number from 0. (CLI11 alone would take -1 for the largest of them.)
+  Option AddSeed(std::uint64_t& seed, const std::string& text) const;
+
+  /// What is done when the command line names this command, after its values are set.
+  void OnChosen(const std::function<void()>& action) const;
+
+ private:
+  CLI::App* app_;
+};
+
+}  // namespace pregrasp

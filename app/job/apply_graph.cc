@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "app/core/error.h"
+#include "app/job/apply_stages.h"
+
+namespace pregrasp::internal {
+namespace {
+
+constexpr int kSiblings = 5;  // told of a path
+
+NodeFacts MakeNodeFacts(const ContactNode& node) {
+  return {node.id, node.thumb, node.index, node.s_c, node.s_n, node.rank_c, node.rank_n};
+}
+
+void BuildMesh(Application& a) {
+  a.next.planner = a.job.GetPlanner(a.next.start, a.next.config);
+  const PlannerConfig& config = a.next.config;
+  const auto graph = std::make_shared<const ContactGraph>(
+      a.next.planner->BuildGraph(config.mesh, config.graph));
+  a.facts.id = "graph.mesh";
+  a.facts.details =
+      MeshFacts{graph->num_triangles(), static_cast<int>(graph->nodes().size()), graph->mesh()};
+  a.next.graph = graph;
+}
+
+void Score(Application& a) {
+  Require(a.next.graph != nullptr, "a graph", "none");
+  Require(a.next.graph->stage() == GraphStage::kMeshed, "a graph without scores",
+          "one that has them");
+  auto graph = std::make_shared<ContactGraph>(*a.next.graph);
+  a.next.planner->ScoreGraph(*graph);
+  a.facts.id = "graph.score";
+  ScoreFacts facts;
+  facts.samples = graph->config().samples;
+  for (const ContactNode& node : graph->nodes()) {
+    facts.s_c.push_back(node.s_c);
+    facts.s_n.push_back(node.s_n);
+    facts.occluded.push_back(node.occluded);
+    if (node.rank_c == 1) facts.best_here = MakeNodeFacts(node);
+    if (node.rank_n == 1) facts.best_alone = MakeNodeFacts(node);
+  }
+  a.facts.details = std::move(facts);
+  a.next.graph = std::move(graph);
+}
+
+// What the pruning step that `graph` has taken last, or is taking, cuts by.
+const char* CutName(const ContactGraph& graph) {
+  int stage = static_cast<int>(graph.stage());
+  if (graph.num_done() > 0) ++stage;
+  switch (static_cast<GraphStage>(stage)) {
+    case GraphStage::kPrunedContext:
+      return "context";
+    case GraphStage::kPrunedFree:
+      return "free";
+    default:
+      return "edges";
+  }
+}
+
+void Prune(Application& a) {
+  Require(a.next.graph && a.next.graph->stage() != GraphStage::kMeshed, "a graph with scores",
+          "one without: call score() first");
+  const CommandOptions options(a.command);
+  auto graph = std::make_shared<ContactGraph>(*a.next.graph);
+  if (a.next.config.graph.top_percent != graph->config().top_percent) {
+    graph->SetTopPercent(a.next.config.graph.top_percent);
+  }
+  const int nodes = options.Has("nodes") ? options.Int("nodes") : std::numeric_limits<int>::max();
+  if (nodes < 1) {
+    throw InputError("", "nodes", "a whole number from 1", std::to_string(nodes));
+  }
+  Require(graph->PruneStep(nodes), "a graph with something to prune", "one that is complete");
+  a.facts.id = fmt::format("graph.prune.{}", graph->num_prune_steps());
+  PruneFacts facts;
+  const NodeReason any = graph->Why(0);
+  facts.cut = CutName(*graph);
+  facts.complete = graph->stage() == GraphStage::kConnected;
+  facts.nodes_done = graph->num_done();
+  facts.top_percent = graph->config().top_percent;
+  facts.num_kept_each = any.num_kept_each;
+  facts.threshold_c = any.threshold_c;
+  facts.threshold_n = any.threshold_n;
+  facts.num_edges = graph->num_edges();
+  for (const ContactNode& node : graph->nodes()) {
+    if (node.initial) facts.initial.push_back(node.id);
+    if (node.kept) facts.kept.push_back(node.id);
+  }
+  a.facts.details = std::move(facts);
+  a.next.graph = graph;
+  if (graph->stage() == GraphStage::kConnected) {
+    a.next.paths = std::make_shared<PathList>(graph);
+  }
+}
+
+void TakePath(Application& a) {
+  Require(a.next.paths != nullptr, "a graph that has been pruned", "one that has not");
+  const int rank = CommandOptions(a.command).Int("rank");
+  const auto path = a.next.paths->Find(a.next.config.stages, rank);
+  if (!path) {
+    throw InputError("", "rank",
+                     fmt::format("at most {:.0f} paths", a.next.paths->Count(a.next.config.stages)),
+                     std::to_string(rank));
+  }
+  a.facts.id = fmt::format("paths.rank.{}", rank);
+  PathFacts facts;
+  facts.rank = rank;
+  for (const int id : path->nodes) facts.nodes.push_back(MakeNodeFacts(a.next.graph->nodes()[id]));
+  facts.score = path->score;
+  facts.terms = path->terms;
+  facts.num_paths = a.next.paths->Count(a.next.config.stages);
+  for (const ContactPath& sibling : FindSiblings(*a.next.graph, *path, kSiblings)) {
+    facts.siblings.push_back({sibling.nodes, sibling.score});
+  }
+  a.facts.details = std::move(facts);
+  a.next.path = path;
+}
+
+}  // namespace
+
+void ApplyGraph(Application& a) {
+  if (a.command.verb == Verb::kMesh) BuildMesh(a);
+  if (a.command.verb == Verb::kScore) Score(a);
+  if (a.command.verb == Verb::kPrune) Prune(a);
+  if (a.command.verb == Verb::kPath) TakePath(a);
+}
+
+}  // namespace pregrasp::internal

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include "app/core/error.h"
+#include "app/job/apply_stages.h"
+
+namespace pregrasp::internal {
+namespace {
+
+void SetEndOfTrajectory(Application& a) {
+  const TraceRow& last = a.next.certificate->trace.back();
+  SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
+}
+
+GraspFacts MakeGraspFacts(const JobState& state, int number) {
+  const CompletedGrasp& grasp = state.grasps->grasps[number - 1];
+  const GraspResult& result = grasp.result;
+  GraspFacts facts;
+  facts.path = state.path->rank;
+  facts.number = number;
+  facts.source = "generator";
+  facts.feasible = grasp.feasible();
+  facts.status = GraspStatusName(result.status);
+  facts.raw_status = GraspStatusName(grasp.raw.status);
+  facts.sentence = Explain(result, state.planner->grasp_world());
+  facts.moved_mm = 1e3 * grasp.moved;
+  facts.refinements = grasp.refinements;
+  for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+    const GraspContact& contact = result.contacts[i];
+    Vector3 f_O = Vector3::Zero();
+    const auto row = static_cast<Eigen::Index>(i);
+    if (result.wrench && row < result.wrench->forces.rows()) {
+      f_O = result.wrench->forces.row(row).transpose();
+    }
+    facts.contacts.push_back({contact.finger, contact.p_OC, contact.nhat_O, f_O});
+  }
+  if (!state.release->stays) {
+    for (const GraspContact& contact : state.release->pressing) {
+      facts.kept.push_back({contact.finger, contact.p_OC, contact.nhat_O});
+    }
+  }
+  if (result.wrench) {
+    facts.margin = result.wrench->margin;
+    facts.min_normal_N = result.wrench->min_normal;
+  }
+  if (result.kinematics) {
+    const IkResult& ik = result.kinematics->ik;
+    facts.hand = MakeHandFacts(ik.configuration());
+    facts.tip_error_mm = 1e3 * ik.tip_error;
+    facts.clearance_mm = 1e3 * ik.clearance;
+  }
+  return facts;
+}
+
+void TakeGrasp(Application& a) {
+  Require(a.next.certificate && a.next.certificate->certified, "a certified trajectory",
+          "one that is not");
+  if (!a.next.grasps || a.command.options.contains("settings")) {
+    Require(a.next.num_grasps == 0, "settings of all samples before the first", "a later one");
+    const Planner planner = a.next.planner->WithConfig(a.next.config);
+    // What the generator is asked to complete depends on the settings.
+    a.next.release = std::make_shared<const ReleaseResult>(
+        planner.Release(*a.next.graph, *a.next.certificate));
+    a.next.grasps = std::make_shared<const GraspSet>(
+        planner.CompleteGrasps(*a.next.certificate, *a.next.release, a.next.path->rank));
+  }
+  const int count = static_cast<int>(a.next.grasps->grasps.size());
+  Require(count > 0, "a fingertip to be anywhere on the object", "no place for one");
+  Require(a.next.num_grasps < count, "a sample that is left", "none");
+  const int number = ++a.next.num_grasps;
+  a.facts.id = fmt::format("path.{}.grasp.{}", a.next.path->rank, number);
+  SetEndOfTrajectory(a);
+  a.facts.details = MakeGraspFacts(a.next, number);
+}
+
+void LiftGrasp(Application& a) {
+  const int number = CommandOptions(a.command).Int("grasp");
+  Require(a.next.grasps && number >= 1 && number <= a.next.num_grasps, "the number of a grasp",
+          "another");
+  const CompletedGrasp& grasp = a.next.grasps->grasps[number - 1];
+  Require(grasp.feasible(), "a feasible grasp", "one that is not");
+  const Planner planner = a.next.planner->WithConfig(a.next.config);
+  const auto lift =
+      std::make_shared<const LiftResult>(planner.Lift(*a.next.certificate, grasp.result));
+  a.next.lifts[number] = lift;
+  a.facts.id = fmt::format("path.{}.lift.{}", a.next.path->rank, number);
+  SetWorldFacts(a.facts, a.job.world(), lift->end, {});
+  LiftFacts facts;
+  facts.path = a.next.path->rank;
+  facts.grasp = number;
+  facts.held = lift->held;
+  facts.height_m = lift->height;
+  facts.shift_mm = 1e3 * lift->shift;
+  facts.turn_deg = lift->turn_deg;
+  facts.slip_mm = 1e3 * lift->slip;
+  facts.direction_W = lift->direction_W;
+  facts.hand = MakeHandFacts(grasp.result.kinematics->ik.configuration());
+  a.facts.details = std::move(facts);
+}
+
+}  // namespace
+
+void ApplyGrasp(Application& a) {
+  if (a.command.verb == Verb::kGrasp) TakeGrasp(a);
+  if (a.command.verb == Verb::kLift) LiftGrasp(a);
+}
+
+}  // namespace pregrasp::internal

@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/core/error.h"
+#include "app/job/apply_stages.h"
+
+namespace pregrasp::internal {
+namespace {
+
+// The world at a frame: the bodies where the task has them, the fingers where the hand has its tips.
+WorldState StateOfFrame(const Application& a, const MotionFrameTask& task) {
+  WorldState state = a.next.start;
+  state.t = task.t;
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    const RigidTransform& X_WB = task.X_WB[a.job.world().body_index(static_cast<int>(i))];
+    state.bodies[i].q_WB = Quaternion(X_WB.linear());
+    state.bodies[i].p_WB = X_WB.translation();
+  }
+  const RigidTransform X_WO = state.bodies.front().X_WB();
+  for (int f = 0; f < kNumFingers; ++f) {
+    const Placement::Contact& contact = task.contacts[f];
+    FingertipState& tip = state.fingers[f];
+    tip.on = tip.touching = contact.on;
+    if (!contact.on) continue;
+    tip.p_OC = contact.p_OC;
+    tip.nhat_O = contact.nhat_O;
+    tip.p_WF = tip.p_WTarget = X_WO * contact.p_OC;
+  }
+  return state;
+}
+
+void SetFrameFacts(Application& a, int frame) {
+  const MotionFrameTask& task = a.next.motion->task().frames.at(frame);
+  const MotionFrame& solved = a.next.motion_state->frames.at(frame);
+  SetWorldFacts(a.facts, a.job.world(), StateOfFrame(a, task), {});
+  FrameFacts facts;
+  facts.path = a.next.path->rank;
+  facts.grasp = a.next.chosen_grasp;
+  facts.frame = frame + 1;
+  const std::vector<int>& keyframes = a.next.motion->task().keyframes;
+  const auto key = std::find(keyframes.begin(), keyframes.end(), frame);
+  if (key != keyframes.end()) facts.keyframe = static_cast<int>(key - keyframes.begin()) + 1;
+  facts.phase = MotionPhaseName(task.phase);
+  facts.loosened = LooseningRungName(solved.rung);
+  facts.failed = solved.rung == LooseningRung::kFailed;
+  facts.tip_error_mm = 1e3 * solved.tip_error;
+  facts.clearance_mm = 1e3 * solved.clearance;
+  facts.hand = MakeHandFacts(solved.configuration);
+  for (int f = 0; f < kNumFingers; ++f) {
+    const Placement::Contact& contact = task.contacts[f];
+    if (contact.on) {
+      facts.touching.push_back({static_cast<Finger>(f), contact.p_OC, contact.nhat_O});
+    }
+  }
+  a.facts.details = std::move(facts);
+}
+
+// The motion that ends in the grasp that the command names.
+void Begin(Application& a) {
+  const int number = CommandOptions(a.command).Int("grasp");
+  const auto lift = a.next.lifts.find(number);
+  Require(lift != a.next.lifts.end(), "a grasp whose lift was simulated", "another");
+  const Planner planner = a.next.planner->WithConfig(a.next.config);
+  const auto motion = std::make_shared<const HandMotion>(
+      planner.MakeMotion(*a.next.certificate, a.next.grasps->grasps[number - 1].result,
+                         lift->second->direction_W, a.next.config.motion));
+  a.next.chosen_grasp = number;
+  a.next.motion = motion;
+  a.next.motion_state = std::make_shared<const MotionState>(motion->Start());
+}
+
+void SolveKeyframe(Application& a) {
+  if (a.command.options.contains("grasp")) {
+    Require(!a.next.motion, "a motion that has not begun", "one that has");
+    Begin(a);
+  }
+  Require(a.next.motion != nullptr, "the grasp that the motion ends in", "none");
+  MotionState state = *a.next.motion_state;
+  Require(a.next.motion->SolveKeyframe(state), "a keyframe that is left", "none");
+  const int frame = state.solved_keys.back();
+  a.next.motion_state = std::make_shared<const MotionState>(std::move(state));
+  SetFrameFacts(a, frame);
+  a.facts.id = fmt::format("motion.key.{}", std::get<FrameFacts>(a.facts.details).keyframe);
+}
+
+void SetMotionFacts(Application& a) {
+  const MotionSummary summary = a.next.motion->Summarize(*a.next.motion_state);
+  MotionFacts facts;
+  facts.path = a.next.path->rank;
+  facts.grasp = a.next.chosen_grasp;
+  facts.frames = summary.frames;
+  facts.failed = summary.failed;
+  facts.loosened = summary.loosened;
+  facts.max_tip_error_mm = 1e3 * summary.max_tip_error;
+  facts.min_clearance_mm = 1e3 * summary.min_clearance;
+  facts.max_joint_speed = summary.max_joint_speed;
+  facts.max_wrist_speed = summary.max_wrist_speed;
+  facts.order = KeyframeOrderName(a.next.motion->config().order);
+  a.facts.details = std::move(facts);
+}
+
+void Fill(Application& a) {
+  Require(a.next.motion && a.next.motion_state->solved_keys.size() ==
+                               a.next.motion->task().keyframes.size(),
+          "a motion with all keyframes", "one without");
+  Require(!a.next.motion_state->filled, "a motion without its in-betweens", "one with them");
+  MotionState state = *a.next.motion_state;
+  a.next.motion->FillInBetweens(state);
+  a.next.motion_state = std::make_shared<const MotionState>(std::move(state));
+  a.facts.id = "motion.fill";
+  SetMotionFacts(a);
+}
+
+void Smooth(Application& a) {
+  Require(a.next.motion && a.next.motion_state->filled, "a motion with its in-betweens",
+          "one without");
+  Require(a.next.motion_state->sweeps == 0, "a motion that is not smoothed", "one that is");
+  MotionState state = *a.next.motion_state;
+  a.next.motion->Finish(state);
+  a.next.motion_state = std::make_shared<const MotionState>(std::move(state));
+  a.facts.id = "motion.smooth";
+  SetMotionFacts(a);
+}
+
+void ShowFrame(Application& a) {
+  Require(a.next.motion && a.next.motion_state->filled, "a finished motion", "one that is not");
+  const int frame = CommandOptions(a.command).Int("frame");
+  const int count = static_cast<int>(a.next.motion_state->frames.size());
+  if (frame < 1 || frame > count) {
+    throw InputError("", "frame", fmt::format("1 to {}", count), std::to_string(frame));
+  }
+  a.facts.id = fmt::format("motion.frame.{}", frame);
+  SetFrameFacts(a, frame - 1);
+}
+
+}  // namespace
+
+void ApplyMotion(Application& a) {
+  if (a.command.verb == Verb::kKeyframe) SolveKeyframe(a);
+  if (a.command.verb == Verb::kFill) Fill(a);
+  if (a.command.verb == Verb::kSmooth) Smooth(a);
+  if (a.command.verb == Verb::kFrame) ShowFrame(a);
+}
+
+}  // namespace pregrasp::internal

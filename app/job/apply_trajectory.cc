@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include "app/core/error.h"
+#include "app/job/apply_stages.h"
+
+namespace pregrasp::internal {
+namespace {
+
+CostFacts MakeCostFacts(const PlanCost& cost) {
+  CostFacts facts{cost.total, cost.stage_scores, cost.final_score, {}};
+  for (const CostTerm& term : CostTerms()) facts.terms.push_back({term.name, cost.*term.value});
+  return facts;
+}
+
+int TriangleOf(const Mppi& mppi, std::size_t stage, int finger) {
+  const ContactNode& node = mppi.problem().graph->nodes().at(mppi.problem().path.nodes[stage]);
+  return finger == 0 ? node.thumb : node.index;
+}
+
+// A plan's stages, of a RelativePlan or a WorldPlan.
+template <typename Stages>
+std::vector<StageFacts> MakeStageFacts(const Mppi& mppi, const Stages& stages) {
+  std::vector<StageFacts> facts;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    StageFacts stage;
+    for (int f = 0; f < kNumPlanningFingers; ++f) {
+      const auto& finger = stages[i][f];
+      stage.push_back({static_cast<Finger>(f), finger.on, finger.kept, TriangleOf(mppi, i, f),
+                       finger.contact.p_OC, finger.contact.nhat_O, {}});
+    }
+    facts.push_back(std::move(stage));
+  }
+  return facts;
+}
+
+RolloutFacts MakeRolloutFacts(const Mppi& mppi, const MppiSample& sample) {
+  RolloutFacts facts;
+  facts.cost = MakeCostFacts(sample.cost);
+  facts.weight = sample.weight;
+  facts.stages = MakeStageFacts(mppi, mppi.Decode(sample.action).stages);
+  facts.p_WO_end = sample.X_WO_end.translation();
+  facts.q_WO_end = Quaternion(sample.X_WO_end.linear());
+  return facts;
+}
+
+// The optimisation of the state's path with its settings, begun unless it has been.
+void Prepare(Application& a) {
+  Require(a.next.path != nullptr, "a path", "none");
+  if (a.next.mppi && !a.command.options.contains("settings")) return;
+  const Planner planner = a.next.planner->WithConfig(a.next.config);
+  const auto mppi = std::make_shared<const Mppi>(
+      planner.MakeMppi(*a.next.graph, *a.next.path, a.next.config.mppi));
+  MppiState start = mppi->Start();
+  if (a.next.optimization && a.next.optimization->mean.size() != start.mean.size()) {
+    throw InputError("", "mppi.knots",
+                     std::to_string(a.next.mppi->config().timing.knots) + ", as before",
+                     std::to_string(a.next.config.mppi.timing.knots));
+  }
+  if (!a.next.optimization) {
+    a.next.optimization = std::make_shared<const MppiState>(std::move(start));
+  }
+  a.next.mppi = mppi;
+}
+
+void Iterate(Application& a) {
+  Prepare(a);
+  Require(!a.next.optimization->converged || a.command.options.contains("settings"),
+          "an optimisation that goes on", "one that has ended");
+  const Mppi& mppi = *a.next.mppi;
+  MppiState state = *a.next.optimization;
+  const int iteration = state.iteration;
+  mppi.Step(state, a.job.pool());
+  a.facts.id = fmt::format("path.{}.mppi.{}", a.next.path->rank, state.iteration);
+  IterationFacts facts;
+  facts.path = a.next.path->rank;
+  facts.iteration = state.iteration;
+  facts.limit = mppi.config().iterations;
+  facts.sigma = mppi.CalcSigma(iteration);
+  facts.best_cost = state.best_cost;
+  facts.mean_cost = state.mean_history.back();
+  facts.best = MakeCostFacts(state.best);
+  facts.converged = state.converged;
+  if (state.converged) facts.end = state.iteration >= facts.limit ? "limit" : "patience";
+  for (const MppiSample& sample : state.samples) {
+    facts.rollouts.push_back(MakeRolloutFacts(mppi, sample));
+  }
+  a.facts.details = std::move(facts);
+  a.next.optimization = std::make_shared<const MppiState>(std::move(state));
+}
+
+CertifyFacts MakeCertifyFacts(const JobState& state) {
+  const Certificate& certificate = *state.certificate;
+  const ReleaseResult& release = *state.release;
+  CertifyFacts facts;
+  facts.path = state.path->rank;
+  facts.certified = certificate.certified;
+  for (const CertifyReason reason : certificate.reasons) {
+    facts.reasons.emplace_back(CertifyReasonText(reason));
+  }
+  facts.hold_seconds = state.config.certify.hold_seconds;
+  facts.hold_shift_mm = 1e3 * certificate.hold_shift;
+  facts.hold_turn_deg = certificate.hold_turn_deg;
+  facts.step_shift_mm = 1e3 * certificate.step_shift;
+  facts.step_turn_deg = certificate.step_turn_deg;
+  facts.released_shift_mm = 1e3 * release.shift;
+  facts.released_turn_deg = release.turn_deg;
+  facts.stays_when_released = release.stays;
+  facts.seconds = certificate.full.seconds;
+  facts.max_speed = certificate.full.max_speed;
+  facts.max_force_N = certificate.full.max_force;
+  facts.max_penetration_mm = 1e3 * certificate.full.max_penetration;
+  facts.max_tip_overlap_mm = 1e3 * certificate.full.max_tip_overlap;
+  for (const GraspContact& contact : release.pressing) {
+    facts.pressing.push_back({contact.finger, contact.p_OC, contact.nhat_O});
+  }
+  facts.stages = MakeStageFacts(*state.mppi, certificate.full.plan.stages);
+  for (std::size_t i = 0; i < facts.stages.size(); ++i) {
+    for (std::size_t f = 0; f < facts.stages[i].size(); ++f) {
+      facts.stages[i][f].p_WTargets = certificate.full.plan.stages[i][f].p_WTargets;
+    }
+  }
+  return facts;
+}
+
+void CertifyBest(Application& a) {
+  Require(a.next.optimization && a.next.optimization->iteration > 0, "at least one step()", "none");
+  const Planner planner = a.next.planner->WithConfig(a.next.config);
+  auto certificate =
+      std::make_shared<const Certificate>(planner.Certify(*a.next.mppi, *a.next.optimization));
+  a.next.release =
+      std::make_shared<const ReleaseResult>(planner.Release(*a.next.graph, *certificate));
+  a.next.certificate = certificate;
+  a.facts.id = fmt::format("path.{}.certify", a.next.path->rank);
+  const TraceRow& last = certificate->trace.back();
+  SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
+  a.facts.details = MakeCertifyFacts(a.next);
+}
+
+}  // namespace
+
+void ApplyTrajectory(Application& a) {
+  if (a.command.verb == Verb::kIterate) Iterate(a);
+  if (a.command.verb == Verb::kCertify) CertifyBest(a);
+}
+
+}  // namespace pregrasp::internal

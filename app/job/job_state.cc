@@ -1,0 +1,25 @@
+#include "app/job/job_state.h"
+
+namespace pregrasp {
+
+Progress CalcProgress(const JobState& state) {
+  using Reached = Progress::Reached;
+  Progress progress;
+  if (!state.certificate) return progress;
+  progress.reached = state.certificate->certified ? Reached::kCertified : Reached::kTrajectory;
+  for (int i = 0; i < state.num_grasps; ++i) {
+    progress.feasible += state.grasps->grasps[i].feasible() ? 1 : 0;
+  }
+  if (progress.feasible > 0) progress.reached = Reached::kFeasible;
+  for (const auto& [number, lift] : state.lifts) progress.lifted += lift->held ? 1 : 0;
+  if (progress.lifted > 0) progress.reached = Reached::kLifted;
+  const bool finished = state.motion && state.motion_state->filled &&
+                        state.motion_state->sweeps >= state.motion->config().smoothing_sweeps;
+  if (finished && state.lifts.at(state.chosen_grasp)->held &&
+      state.motion->Summarize(*state.motion_state).failed == 0) {
+    progress.reached = Reached::kMoved;
+  }
+  return progress;
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,231 @@
+#include "app/job/run_policy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+
+namespace pregrasp {
+namespace {
+
+using Node = Timeline::Node;
+
+bool IsComplete(const Node& node) {
+  const auto* pruning = std::get_if<PruneFacts>(&node.facts.details);
+  return pruning != nullptr && pruning->complete;
+}
+
+// The most frequent verdict on the grasps of a state.
+std::string CommonReason(const JobState& state) {
+  std::map<std::string, int> counts;
+  for (const CompletedGrasp& grasp : state.grasps->grasps) {
+    ++counts[GraspStatusName(grasp.result.status)];
+  }
+  const auto most =
+      std::max_element(counts.begin(), counts.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return fmt::format("{} ({} of {})", most->first, most->second, state.grasps->grasps.size());
+}
+
+class Runner {
+ public:
+  Runner(Timeline& timeline, const RunConfig& config,
+         const std::function<void(const RunProgress&)>& progress)
+      : timeline_(timeline), config_(config), progress_(progress) {}
+
+  RunResult Run() {
+    Report("start verdict", 0, 1);
+    const Node& verdict = timeline_.Do(timeline_.root(), Verb::kVerdict);
+    if (std::get<VerdictFacts>(verdict.facts.details).feasible > 0) {
+      return {&timeline_.root(), "start_graspable", {}};
+    }
+    const Node& graph = BuildGraph();
+    RunResult result;
+    for (int rank = 1; rank <= config_.paths && HasPath(graph, rank); ++rank) {
+      const Node& end = Try(graph, rank);
+      result.reasons.push_back(Explain(end, rank));
+      const bool success = end.progress.reached == Progress::Reached::kMoved;
+      if (success && result.end == nullptr) result.end = &end;
+      if (success && !config_.all) break;
+    }
+    if (result.end == nullptr) result.end = &FindFurthest(timeline_);
+    result.status = StatusAt(timeline_, *result.end).value_or("not_certified");
+    return result;
+  }
+
+ private:
+  void Report(const std::string& stage, int done, int total) const {
+    if (progress_) progress_({stage, done, total});
+    ThrowIfInterrupted();
+  }
+
+  const Node& BuildGraph() {
+    Report("contact graph", 0, 1);
+    const Node& mesh = timeline_.Do(timeline_.root(), Verb::kMesh);
+    return PruneAll(timeline_, timeline_.Do(mesh, Verb::kScore), {});
+  }
+
+  bool HasPath(const Node& graph, int rank) const {
+    const auto state = timeline_.GetState(graph);
+    return state->paths->Find(state->config.stages, rank) != nullptr;
+  }
+
+  const Node& Try(const Node& graph, int rank) {
+    const std::string name = fmt::format("path {} of {}", rank, config_.paths);
+    const Node& certified = Certify(graph, rank, name);
+    if (!std::get<CertifyFacts>(certified.facts.details).certified) return certified;
+    if (timeline_.GetState(certified)->release->conditions.empty()) return certified;
+    Report(name + ", grasps", 0, 1);
+    const Node& grasps = CompleteGrasps(timeline_, certified, nlohmann::json::object());
+    return MoveHand(grasps, name);
+  }
+
+  const Node& Certify(const Node& graph, int rank, const std::string& name) {
+    const Node* node = &timeline_.Do(graph, Verb::kPath, {{"rank", rank}});
+    bool converged = false;
+    while (!converged) {
+      const auto* last = std::get_if<IterationFacts>(&node->facts.details);
+      Report(name + ", trajectory", last == nullptr ? 0 : last->iteration,
+             last == nullptr ? 1 : last->limit);
+      node = &timeline_.Do(*node, Verb::kIterate);
+      converged = std::get<IterationFacts>(node->facts.details).converged;
+    }
+    return timeline_.Do(*node, Verb::kCertify);
+  }
+
+  // Tries the lifting grasps in turn; the first whose motion has no failed frame is it, else the first one.
+  const Node& MoveHand(const Node& grasps, const std::string& name) {
+    const auto state = timeline_.GetState(grasps);
+    const std::vector<int> order = OrderGrasps(*state);
+    const Node* best = &grasps;
+    int tried = 0;
+    for (const int number : order) {
+      if (tried == config_.motions || !state->lifts.at(number)->held) break;
+      Report(name + ", hand motion", tried++, config_.motions);
+      const Node& moved = FinishMotion(timeline_, grasps, {{"grasp", number}});
+      if (best == &grasps || best->progress < moved.progress) best = &moved;
+      if (moved.progress.reached == Progress::Reached::kMoved) {
+        return ShowFrames(timeline_, moved);
+      }
+    }
+    return *best;
+  }
+
+  std::string Explain(const Node& end, int rank) const {
+    const auto state = timeline_.GetState(end);
+    const std::string head =
+        fmt::format("path {}, cost {:.3f}: ", rank, state->optimization->best_cost);
+    if (!state->certificate->certified) {
+      std::string reasons;
+      for (const CertifyReason reason : state->certificate->reasons) {
+        reasons += (reasons.empty() ? "" : "; ") + std::string(CertifyReasonText(reason));
+      }
+      return head + "not certified: " + reasons;
+    }
+    if (!state->grasps) return head + "certified, but no fingertip can be anywhere on the object";
+    if (end.progress.feasible == 0) {
+      return head + "certified, but no grasp is feasible, most often because of " +
+             CommonReason(*state);
+    }
+    const std::string share = fmt::format("{} of {} grasps are feasible", end.progress.feasible,
+                                          state->grasps->grasps.size());
+    if (end.progress.lifted == 0) return head + share + ", but none lifts the object";
+    const std::string lifted = share + fmt::format(", {} of them lift", end.progress.lifted);
+    if (end.progress.reached != Progress::Reached::kMoved) {
+      return head + lifted +
+             fmt::format(", but the hand motion fails in {} frames",
+                         state->motion->Summarize(*state->motion_state).failed);
+    }
+    return head + lifted + ", and the hand gets there";
+  }
+
+  Timeline& timeline_;
+  const RunConfig& config_;
+  const std::function<void(const RunProgress&)>& progress_;
+};
+
+}  // namespace
+
+void RunConfig::Validate() const {
+  if (paths < 1 || paths > 1000) {
+    throw InputError("", "paths", "a whole number from 1 to 1000", std::to_string(paths));
+  }
+  if (motions < 1 || motions > 1000) {
+    throw InputError("", "motions", "a whole number from 1 to 1000", std::to_string(motions));
+  }
+}
+
+RunResult RunPlanner(Timeline& timeline, const RunConfig& config,
+                     const std::function<void(const RunProgress&)>& progress) {
+  config.Validate();
+  return Runner(timeline, config, progress).Run();
+}
+
+const Node& PruneAll(Timeline& timeline, const Node& scored, nlohmann::json options) {
+  const Node* node = &scored;
+  while (!IsComplete(*node)) {
+    node = &timeline.Do(*node, Verb::kPrune, std::move(options));
+    options = nlohmann::json::object();
+  }
+  return *node;
+}
+
+const Node& CompleteGrasps(Timeline& timeline, const Node& certified, nlohmann::json options) {
+  const Node* node = &timeline.Do(certified, Verb::kGrasp, std::move(options));
+  auto state = timeline.GetState(*node);
+  const int count = static_cast<int>(state->grasps->grasps.size());
+  while (timeline.GetState(*node)->num_grasps < count) {
+    ThrowIfInterrupted();
+    node = &timeline.Do(*node, Verb::kGrasp);
+  }
+  for (int number = 1; number <= count; ++number) {
+    ThrowIfInterrupted();
+    if (!state->grasps->grasps[number - 1].feasible()) continue;
+    node = &timeline.Do(*node, Verb::kLift, {{"grasp", number}});
+  }
+  return *node;
+}
+
+std::vector<int> OrderGrasps(const JobState& state) {
+  std::vector<int> order;
+  for (const auto& [number, lift] : state.lifts) order.push_back(number);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    const bool a_held = state.lifts.at(a)->held, b_held = state.lifts.at(b)->held;
+    if (a_held != b_held) return a_held;
+    return state.grasps->grasps[a - 1].result.wrench->margin >
+           state.grasps->grasps[b - 1].result.wrench->margin;
+  });
+  return order;
+}
+
+const Node& FinishMotion(Timeline& timeline, const Node& node, nlohmann::json options) {
+  const Node* at = &node;
+  const auto left = [&] {
+    const auto state = timeline.GetState(*at);
+    return !state->motion ||
+           state->motion_state->solved_keys.size() < state->motion->task().keyframes.size();
+  };
+  while (left()) {
+    ThrowIfInterrupted();
+    at = &timeline.Do(*at, Verb::kKeyframe, std::move(options));
+    options = nlohmann::json::object();
+  }
+  if (!timeline.GetState(*at)->motion_state->filled) at = &timeline.Do(*at, Verb::kFill);
+  if (timeline.GetState(*at)->motion_state->sweeps == 0) at = &timeline.Do(*at, Verb::kSmooth);
+  return *at;
+}
+
+const Node& ShowFrames(Timeline& timeline, const Node& finished) {
+  const Node* at = &finished;
+  const int count = static_cast<int>(timeline.GetState(finished)->motion_state->frames.size());
+  for (int frame = 1; frame <= count; ++frame) {
+    ThrowIfInterrupted();
+    at = &timeline.Do(*at, Verb::kFrame, {{"frame", frame}});
+  }
+  return *at;
+}
+
+}  // namespace pregrasp

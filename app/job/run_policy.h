@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/job/run_summary.h"
+#include "app/job/timeline.h"
+
+namespace pregrasp {
+
+struct RunConfig {
+  int paths = 10;    ///< full optimisations at most, 1 to 1000 (design: the budget)
+  bool all = false;  ///< go on to the last path after the first success
+  int motions = 4;   ///< lifting grasps of one path whose hand motion is tried
+
+  void Validate() const;
+};
+
+/// Where a run is: `done` of `total` pieces of `stage`.
+struct RunProgress {
+  std::string stage;
+  int done = 0, total = 0;
+};
+
+/// Where a run ended.
+struct RunResult {
+  const Timeline::Node* end = nullptr;  ///< the node that the summary is of
+  std::string status;
+  /// One sentence for each path that was tried: how far it came and what stood in the way.
+  std::vector<std::string> reasons;
+};
+
+/// The whole pipeline (paper, Figure 2) as commands to a timeline: the start's verdict, graph, then path after
+/// path in their order until one ends in a certified trajectory, a grasp whose lift is held and a hand motion
+/// without a failed frame. @throws Interrupted, with what was done in the timeline.
+RunResult RunPlanner(Timeline& timeline, const RunConfig& config,
+                     const std::function<void(const RunProgress&)>& progress);
+
+// The parts of it that a script calls too, each from one node to the last one of what it did.
+
+/// Prunes until nothing is left to prune.
+const Timeline::Node& PruneAll(Timeline& timeline, const Timeline::Node& scored,
+                               nlohmann::json options);
+
+/// Takes all samples of a certified trajectory as steps, then lifts the feasible ones.
+const Timeline::Node& CompleteGrasps(Timeline& timeline, const Timeline::Node& certified,
+                                     nlohmann::json options);
+
+/// The grasps whose lift was simulated, the most promising first, by number. `node` is after CompleteGrasps.
+std::vector<int> OrderGrasps(const JobState& state);
+
+/// Solves the keyframes that are left and the frames between them, and smooths.
+/// @param options  of the next keyframe: {grasp, settings} where the motion has not begun.
+const Timeline::Node& FinishMotion(Timeline& timeline, const Timeline::Node& node,
+                                   nlohmann::json options);
+
+/// Shows every frame of a finished motion as a step.
+const Timeline::Node& ShowFrames(Timeline& timeline, const Timeline::Node& finished);
+
+}  // namespace pregrasp

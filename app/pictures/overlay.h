@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/job/step_facts.h"
+#include "render/render_scene.h"
+
+namespace pregrasp {
+
+/// What a kind of step adds to a picture of the world.
+struct PictureOverlay {
+  /// The contact mesh, in O, in place of the object; one colour a triangle.
+  std::shared_ptr<const TriangleMesh> contact_mesh;
+  std::vector<Rgba> face_colors;
+  /// The object at other times or in other plans.
+  struct Ghost {
+    RigidTransform X_WO = RigidTransform::Identity();
+    Rgba color;
+  };
+  std::vector<Ghost> ghosts;
+  std::optional<HandConfiguration> hand;  ///< the whole hand, in place of the two fingers
+  /// Fingers of the hand that touch: their last links get the finger's colour.
+  std::array<bool, kNumFingers> touching{};
+  bool forces = true;  ///< false: no physics happens here, so no forces are drawn
+  RenderLegend legend;
+  /// What the picture shows at least, in automatic pictures (#points x 3, world).
+  MatrixX3 focus_W = MatrixX3(0, 3);
+};
+
+PictureOverlay MakeOverlay(const StepFacts& step, const FactsSource& steps);
+
+/// Where what led to `step` began: the scene's start, settled or not.
+const StepFacts& FindStart(const StepFacts& step, const FactsSource& steps);
+
+/// Whether a run with PictureMode::kKey draws the step unasked: the start, scores, the pruned graph, paths,
+/// every fifth iteration and the last, certificates, of each path the first grasp that is feasible and the
+/// first that is not, lifts, keyframes.
+bool IsKeyStep(const StepFacts& step, const FactsSource& steps);
+
+}  // namespace pregrasp

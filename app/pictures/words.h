@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/graph/contact_graph.h"
+#include "app/job/step_facts.h"
+#include "app/scene/scene.h"
+
+namespace pregrasp {
+
+/// "(60, 0, -1.5) mm" from metres.
+std::string FormatMillimetres(const Vector3& v);
+
+/// What happened in a step and why: a sentence or two made from its facts, then rows of a table
+/// ("index force\t0.56 N").
+std::vector<std::string> DescribeStep(const Scene& scene, const StepFacts& step,
+                                      const FactsSource& steps);
+
+/// Why a node is in the graph or not, in one sentence.
+std::string DescribeReason(const NodeReason& reason);
+
+namespace internal {
+
+// Its parts.
+std::vector<std::string> DescribeScene(const Scene& scene);
+std::vector<std::string> DescribePlanning(const Scene& scene, const StepFacts& step);
+std::vector<std::string> DescribeSimulation(const Scene& scene, const StepFacts& step,
+                                            const StepFacts& before);
+
+}  // namespace internal
+}  // namespace pregrasp

@@ -1,0 +1,226 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/pictures/words.h"
+
+namespace pregrasp {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+template <typename Node>
+std::string NodeText(const Node& node) {
+  return fmt::format("node {} (thumb {}, index {})", node.id, node.thumb, node.index);
+}
+
+std::string Join(const std::vector<std::string>& texts, const char* separator) {
+  std::string joined;
+  for (const std::string& text : texts) joined += (joined.empty() ? "" : separator) + text;
+  return joined;
+}
+
+// "tip_spacing" as words.
+std::string Words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+Lines Describe(const Scene& scene, const SettleFacts& facts) {
+  return {fmt::format("Left alone for {:.3g} s, the {} {}.", facts.seconds, scene.object().name,
+                      facts.at_rest ? "stays at rest" : "does not stay at rest"),
+          fmt::format("moved\t{:.4f} mm", facts.moved_mm),
+          fmt::format("turned\t{:.4f} deg", facts.rotated_deg)};
+}
+
+Lines Describe(const Scene& /*scene*/, const VerdictFacts& facts) { return {facts.sentence}; }
+
+Lines Describe(const Scene& /*scene*/, const MeshFacts& facts) {
+  return {fmt::format("The object's surface in {} triangles. A contact state puts the thumb "
+                      "somewhere on one of them and the index finger on another, or the same.",
+                      facts.triangles),
+          fmt::format("contact states\t{}", facts.nodes)};
+}
+
+Lines Describe(const Scene& /*scene*/, const ScoreFacts& facts) {
+  return {fmt::format("How likely does a contact state lead to a grasp? The learned score of each, "
+                      "mean of {} placements of thumb, index finger and both; a triangle has the "
+                      "colour of the best state that uses it.",
+                      facts.samples),
+          fmt::format("best here\t{:.3f}, {}", facts.best_here.s_c, NodeText(facts.best_here)),
+          fmt::format("best alone\t{:.3f}, {}", facts.best_alone.s_n, NodeText(facts.best_alone))};
+}
+
+Lines Describe(const Scene& /*scene*/, const PruneFacts& facts) {
+  Lines lines;
+  if (facts.cut == "context") {
+    lines = {fmt::format("The {:g} % with the best score among the surroundings stay: with one of "
+                         "these a path may begin.",
+                         facts.top_percent),
+             fmt::format("threshold\t{:.3f}", facts.threshold_c)};
+  } else if (facts.cut == "free") {
+    lines = {fmt::format("So do the {:g} % with the best score without surroundings: they may come "
+                         "later, when the object has moved.",
+                         facts.top_percent),
+             fmt::format("threshold\t{:.3f}", facts.threshold_n)};
+  } else {
+    lines = {"States that share a triangle are connected: one finger stays while the other "
+             "changes its place.",
+             fmt::format("edges\t{}", facts.num_edges)};
+  }
+  if (facts.nodes_done > 0) {
+    lines.push_back(fmt::format("so far\t{} nodes of this step", facts.nodes_done));
+  }
+  lines.push_back(fmt::format("may begin\t{}", facts.initial.size()));
+  lines.push_back(fmt::format("kept\t{}", facts.kept.size()));
+  return lines;
+}
+
+Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
+  Lines lines = {fmt::format("Path {}: of all paths of {} contact states the one with rank {} by "
+                             "the sum of its scores.",
+                             facts.rank, facts.nodes.size(), facts.rank),
+                 fmt::format("score\t{:.3f}", facts.score)};
+  for (std::size_t i = 0; i < facts.nodes.size(); ++i) {
+    lines.push_back(fmt::format("stage {}\t{:.3f}, thumb {}, index {}", i + 1, facts.terms[i],
+                                facts.nodes[i].thumb, facts.nodes[i].index));
+  }
+  if (!facts.siblings.empty()) {
+    lines.push_back(fmt::format("next best, other end\t{:.3f} behind",
+                                facts.score - facts.siblings.front().score));
+  }
+  return lines;
+}
+
+std::string EndOfOptimisation(const IterationFacts& facts) {
+  if (!facts.converged) return "";
+  return facts.end == "limit" ? fmt::format(" The limit of {} iterations ends it.", facts.limit)
+                              : " The best cost has stopped falling.";
+}
+
+Lines Describe(const Scene& /*scene*/, const IterationFacts& facts) {
+  Lines lines = {
+      fmt::format("Iteration {}: {} plans near the mean were simulated; the ghosts are where the "
+                  "best of them leave the object, and the mean moves towards them.{}",
+                  facts.iteration, facts.rollouts.size(), EndOfOptimisation(facts)),
+      fmt::format("best cost\t{:.3f}", facts.best_cost),
+      fmt::format("mean cost\t{:.3f}", facts.mean_cost)};
+  for (std::size_t i = 0; i < facts.best.stage_scores.size(); ++i) {
+    lines.push_back(fmt::format("score, stage {}\t{:.3f}", i + 1, facts.best.stage_scores[i]));
+  }
+  lines.push_back(fmt::format("score, end\t{:.3f}", facts.best.final_score));
+  for (const CostTermFacts& term : facts.best.terms) {
+    if (term.value >= 5e-4) {
+      lines.push_back(fmt::format("cost of {}\t{:.3f}", Words(term.name), term.value));
+    }
+  }
+  return lines;
+}
+
+Lines Describe(const Scene& scene, const CertifyFacts& facts) {
+  Lines lines;
+  if (facts.certified) {
+    lines.push_back(fmt::format(
+        "The best plan, simulated again by Simbody and at half the time step, leaves the {} where "
+        "it stays. Without the fingers it {}, so they {}.",
+        scene.object().name, facts.stays_when_released ? "stays too" : "would move",
+        facts.stays_when_released ? "may leave" : "must keep pressing"));
+  } else {
+    lines.push_back("Not certified: " + Join(facts.reasons, "; ") + ".");
+  }
+  lines.push_back(fmt::format("moves in {:g} s\t{:.2f} mm, {:.2f} deg", facts.hold_seconds,
+                              facts.hold_shift_mm, facts.hold_turn_deg));
+  lines.push_back(fmt::format("at half the step\t{:.2f} mm, {:.2f} deg elsewhere",
+                              facts.step_shift_mm, facts.step_turn_deg));
+  lines.push_back(fmt::format("moves if released\t{:.1f} mm, {:.1f} deg", facts.released_shift_mm,
+                              facts.released_turn_deg));
+  lines.push_back(fmt::format("largest force\t{:.2f} N", facts.max_force_N));
+  return lines;
+}
+
+Lines Describe(const Scene& /*scene*/, const GraspFacts& facts) {
+  Lines lines = {facts.sentence};
+  if (facts.moved_mm > 0.0) {
+    lines.push_back(fmt::format("contacts moved by\t{:.1f} mm", facts.moved_mm));
+  }
+  for (const GraspContactFacts& contact : facts.contacts) {
+    if (!facts.feasible) break;
+    lines.push_back(fmt::format("{}\t{:.2f} N", FingerName(contact.finger), contact.f_O.norm()));
+  }
+  if (facts.clearance_mm) {
+    lines.push_back(fmt::format("hand clearance\t{:.1f} mm", *facts.clearance_mm));
+  }
+  return lines;
+}
+
+Lines Describe(const Scene& scene, const LiftFacts& facts) {
+  const std::string& name = scene.object().name;
+  Lines lines = {facts.held
+                     ? fmt::format("The grasp closes and lifts the {}, which follows.", name)
+                     : fmt::format("The lift of the {} fails{}.", name,
+                                   facts.reasons.empty() ? "" : ": " + Join(facts.reasons, "; "))};
+  lines.push_back(fmt::format("came\t{:.1f} mm", 1e3 * facts.height_m));
+  lines.push_back(fmt::format("lags\t{:.1f} mm, {:.1f} deg", facts.shift_mm, facts.turn_deg));
+  lines.push_back(fmt::format("fingertips slid\t{:.1f} mm", facts.slip_mm));
+  return lines;
+}
+
+Lines Describe(const Scene& /*scene*/, const FrameFacts& facts) {
+  std::vector<std::string> touching;
+  for (const PlaceFacts& place : facts.touching) touching.emplace_back(FingerName(place.finger));
+  std::string verdict = "The hand is free of overlaps.";
+  if (facts.failed) verdict = "No hand pose was found; this is the best attempt.";
+  if (!facts.failed && facts.loosened != "none") {
+    verdict = fmt::format("Only with a demand loosened: {}.", facts.loosened);
+  }
+  return {fmt::format(
+              "{}: {}. {}", facts.phase,
+              touching.empty() ? "no finger touches" : Join(touching, ", ") + " on the object",
+              verdict),
+          fmt::format("clearance\t{:.2f} mm", facts.clearance_mm),
+          fmt::format("tip error\t{:.2f} mm", facts.tip_error_mm)};
+}
+
+Lines Describe(const Scene& /*scene*/, const MotionFacts& facts) {
+  return {fmt::format("The hand's motion in {} frames, keyframes solved in {} order.",
+                      facts.frames, facts.order),
+          fmt::format("failed frames\t{}", facts.failed),
+          fmt::format("loosened frames\t{}", facts.loosened),
+          fmt::format("least clearance\t{:.2f} mm", facts.min_clearance_mm),
+          fmt::format("largest tip error\t{:.2f} mm", facts.max_tip_error_mm)};
+}
+
+Lines Describe(const Scene& scene, const OpenFacts& /*facts*/) {
+  return internal::DescribeScene(scene);
+}
+
+Lines Describe(const Scene& /*scene*/, const SimulationFacts& /*facts*/) { return {}; }
+
+}  // namespace
+
+std::vector<std::string> internal::DescribePlanning(const Scene& scene, const StepFacts& step) {
+  return std::visit([&](const auto& facts) { return Describe(scene, facts); }, step.details);
+}
+
+std::string DescribeReason(const NodeReason& reason) {
+  const ContactNode& node = reason.node;
+  using Verdict = NodeReason::Verdict;
+  if (reason.verdict == Verdict::kNotScored) return NodeText(node) + " has no score yet";
+  const auto by = [&](const char* where, double score, int rank, double threshold) {
+    return fmt::format("{} it scores {:.3f}, rank {} of {} (the best {} stay, down to {:.3f})",
+                       where, score, rank, reason.num_nodes, reason.num_kept_each, threshold);
+  };
+  std::string text = NodeText(node);
+  text += reason.verdict == Verdict::kPruned          ? " is pruned: "
+          : reason.verdict == Verdict::kKeptByContext ? " is kept for its score here: "
+          : reason.verdict == Verdict::kKeptByFree    ? " is kept for its score alone: "
+                                                      : " is kept for both its scores: ";
+  text += by("here", node.s_c, node.rank_c, reason.threshold_c) + "; ";
+  text += by("without surroundings", node.s_n, node.rank_n, reason.threshold_n);
+  if (node.occluded > 0.0) {
+    text += fmt::format("; no fingertip can be at {:.0f} % of its contacts", 100 * node.occluded);
+  }
+  return text;
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,151 @@
+#include "app/session/picture_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "app/core/error.h"
+#include "app/core/json_reader.h"
+#include "app/core/json_values.h"
+#include "app/pictures/words.h"
+
+namespace pregrasp {
+namespace {
+
+// One OpenGL context for the whole process.
+Renderer& SharedRenderer() {
+  static Renderer renderer;
+  return renderer;
+}
+
+constexpr std::array<OverlayFlag, 11> kOverlays{{{"forces", &PictureConfig::forces},
+                                                 {"cones", &PictureConfig::cones},
+                                                 {"contacts", &PictureConfig::contacts},
+                                                 {"trace", &PictureConfig::trace},
+                                                 {"ghost", &PictureConfig::ghost},
+                                                 {"fingers", &PictureConfig::fingers},
+                                                 {"axes", &PictureConfig::axes},
+                                                 {"mesh", &PictureConfig::mesh},
+                                                 {"scores", &PictureConfig::scores},
+                                                 {"rollouts", &PictureConfig::rollouts},
+                                                 {"hand", &PictureConfig::hand}}};
+
+const char* QualityName(RenderQuality quality) {
+  switch (quality) {
+    case RenderQuality::kDraft:
+      return "draft";
+    case RenderQuality::kNormal:
+      return "normal";
+    case RenderQuality::kStill:
+      return "still";
+  }
+  return "";
+}
+
+}  // namespace
+
+PictureMode ParsePictureMode(const std::string& text, const std::string& where,
+                             const std::string& field) {
+  if (text == "none") return PictureMode::kNone;
+  if (text == "key") return PictureMode::kKey;
+  if (text == "all") return PictureMode::kAll;
+  throw InputError(where, field, "\"none\", \"key\" or \"all\"", '"' + text + '"');
+}
+
+std::span<const OverlayFlag> OverlayFlags() { return kOverlays; }
+
+void SetOverlays(PictureConfig& config, const std::vector<std::string>& names) {
+  for (const OverlayFlag& overlay : kOverlays) config.*overlay.flag = false;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(kOverlays.begin(), kOverlays.end(),
+                                    [&](const OverlayFlag& overlay) { return name == overlay.name; });
+    if (found == kOverlays.end()) {
+      std::string all;
+      for (const OverlayFlag& overlay : kOverlays) {
+        if (!all.empty()) all += ", ";
+        all += overlay.name;
+      }
+      throw InputError("", "overlay", "some of " + all, '"' + name + '"');
+    }
+    config.*found->flag = true;
+  }
+}
+
+RenderQuality ParseQuality(const std::string& text) {
+  for (const RenderQuality quality :
+       {RenderQuality::kDraft, RenderQuality::kNormal, RenderQuality::kStill}) {
+    if (text == QualityName(quality)) return quality;
+  }
+  throw InputError("", "quality", "\"draft\", \"normal\" or \"still\"", '"' + text + '"');
+}
+
+nlohmann::ordered_json ShotToJson(const Shot& shot) {
+  nlohmann::ordered_json overlay = nlohmann::ordered_json::array();
+  for (const OverlayFlag& flag : kOverlays) {
+    if (shot.config.*flag.flag) overlay.push_back(flag.name);
+  }
+  nlohmann::ordered_json camera;
+  if (shot.config.camera) {
+    camera = {{"p_WCam", ToJson(shot.config.camera->p_WCam)},
+              {"p_WTarget", ToJson(shot.config.camera->p_WTarget)},
+              {"fov_deg", shot.config.camera->fov_deg}};
+  }
+  return {{"title", shot.title},
+          {"caption", shot.caption},
+          {"size", {shot.config.width, shot.config.height}},
+          {"quality", QualityName(shot.config.quality)},
+          {"overlay", std::move(overlay)},
+          {"camera", std::move(camera)}};
+}
+
+Shot ShotFromJson(const nlohmann::json& value, const std::string& where) {
+  const JsonReader reader(value, where);
+  Shot shot;
+  shot.title = reader["title"].Text();
+  shot.caption = reader["caption"].Text();
+  shot.config.width = static_cast<int>(reader["size"][0].Number());
+  shot.config.height = static_cast<int>(reader["size"][1].Number());
+  shot.config.quality = ParseQuality(reader["quality"].Text());
+  std::vector<std::string> overlay;
+  for (std::size_t i = 0; i < reader["overlay"].size(); ++i) {
+    overlay.push_back(reader["overlay"][i].Text());
+  }
+  SetOverlays(shot.config, overlay);
+  if (const JsonReader camera = reader["camera"]; !camera.is_null()) {
+    shot.config.camera = CameraConfig{camera["p_WCam"].Vec3(), camera["p_WTarget"].Vec3(),
+                                      camera["fov_deg"].Number()};
+  }
+  return shot;
+}
+
+PictureDrawer::PictureDrawer(Scene scene, PictureLabels labels)
+    : scene_(std::move(scene)), labels_(std::move(labels)) {}
+
+PictureDrawer::~PictureDrawer() = default;
+
+PictureText PictureDrawer::Caption(const StepFacts& step, const FactsSource& steps,
+                                   const Shot& shot) const {
+  PictureText text;
+  text.title = fmt::format("{}   {}   t = {:.2f} s", scene_.name,
+                           shot.title.empty() ? step.id : shot.title, step.t);
+  text.lines = DescribeStep(scene_, step, steps);
+  if (!shot.caption.empty()) text.lines = {shot.caption};
+  text.footer = fmt::format("{} · seed {} · {} · t = {:.3f} s", labels_.scene_file, labels_.seed,
+                            step.id, step.t);
+  if (!labels_.command.empty()) text.footer += " · again: " + labels_.command;
+  return text;
+}
+
+void PictureDrawer::Draw(const StepFacts& step, const FactsSource& steps, const Shot& shot,
+                         const std::filesystem::path& file) {
+  if (!maker_) maker_ = std::make_unique<PictureMaker>(scene_);
+  const RenderScene picture =
+      maker_->Compose(step, steps, Caption(step, steps, shot), shot.config);
+  WritePng(SharedRenderer().Render(
+               picture, {shot.config.width, shot.config.height, shot.config.quality}),
+           file);
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,103 @@
+#include "app/session/recorder.h"
+
+#include <chrono>
+
+#include "app/core/check.h"
+#include "app/core/json_text.h"
+#include "app/job/planner_settings.h"
+#include "app/pictures/overlay.h"
+#include "app/recording/checked_file.h"
+#include "app/recording/motion_table.h"
+#include "app/recording/trace_table.h"
+
+namespace pregrasp {
+namespace {
+
+// What the manifest says of the settings at a node.
+nlohmann::json ConfigurationAt(const Timeline& timeline, const Timeline::Node& node) {
+  nlohmann::json all = PlannerConfigJson(timeline.GetState(node)->config);
+  const StepConfig& step = timeline.job().world().config();
+  all["dynamics"] = {{"dt", step.dt},
+                     {"tolerance", step.tolerance},
+                     {"tolerance_many", step.tolerance_many},
+                     {"max_sweeps", step.max_sweeps},
+                     {"max_sweeps_many", step.max_sweeps_many},
+                     {"margin", step.margin},
+                     {"restitution", step.restitution}};
+  return all;
+}
+
+}  // namespace
+
+Recorder::Recorder(const std::filesystem::path& directory, const Timeline& timeline,
+                   PictureMode pictures, PictureDrawer& drawer, RunInfo info)
+    : run_(directory, timeline.job().scene(), std::move(info)),
+      timeline_(timeline),
+      pictures_(pictures),
+      drawer_(drawer) {}
+
+void Recorder::Draw(const Timeline::Node& node, const Shot& shot) {
+  const auto begin = std::chrono::steady_clock::now();
+  drawer_.Draw(node.facts, timeline_, shot, run_.PictureFile(node.number, node.id()));
+  nlohmann::ordered_json line = {
+      {"picture", "frames/" + PictureName(node.number, node.id())}, {"step", node.id()}};
+  line.update(ShotToJson(shot));
+  drawn_[node.number] = FormatJson(line) + '\n';
+  picture_seconds_ +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void Recorder::DrawPending() {
+  if (pending_ == nullptr) return;
+  const Timeline::Node& node = *std::exchange(pending_, nullptr);
+  const bool wanted =
+      pictures_ == PictureMode::kAll ||
+      (pictures_ == PictureMode::kKey && IsKeyStep(node.facts, timeline_));
+  if (wanted) Draw(node, Shot{});
+}
+
+void Recorder::Add(const Timeline::Node& node) {
+  DrawPending();
+  const int number = run_.AddStep(node.facts);
+  PREGRASP_CHECK(number == node.number, number, node.number);
+  pending_ = &node;
+}
+
+void Recorder::Shoot(const Timeline::Node& node, const Shot& shot) {
+  if (pictures_ == PictureMode::kNone) return;
+  if (pending_ == &node) pending_ = nullptr;
+  Draw(node, shot);
+}
+
+void Recorder::WriteTables(const Timeline::Node& node) {
+  const auto state = timeline_.GetState(node);
+  for (const WorldState& row : GetRollout(*state)) run_.AddRolloutRow(row);
+  const Simulation* simulation = state->simulation.get();
+  if (!state->certificate && simulation != nullptr && simulation->traced()) {
+    std::string table;
+    for (int i = 1; i < simulation->num_states(); ++i) {
+      table += FormatTraceRow(simulation->trace_at(i), simulation->state_at(i).t,
+                              timeline_.job().scene());
+    }
+    if (!table.empty()) WriteFile(run_.partial() / "trace.jsonl", table);
+  }
+  if (state->motion && state->motion_state->filled) {
+    std::string table = MotionHeader();
+    for (std::size_t i = 0; i < state->motion_state->frames.size(); ++i) {
+      table += MotionRow(state->motion->task().frames[i], state->motion_state->frames[i]);
+    }
+    WriteFile(run_.partial() / "motion.csv", table);
+  }
+}
+
+void Recorder::Finish(const Timeline::Node& node, RunSummary summary) {
+  PREGRASP_CHECK(pending_ == nullptr);
+  WriteTables(node);
+  std::string pictures;
+  for (const auto& [number, line] : drawn_) pictures += line;
+  if (!pictures.empty()) WriteFile(run_.partial() / "pictures.jsonl", pictures);
+  summary.seconds.pictures = picture_seconds_;
+  run_.Finish(std::move(summary), ConfigurationAt(timeline_, node));
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,137 @@
+#include "app/session/session.h"
+
+#include <sys/resource.h>
+
+#include "app/core/error.h"
+
+namespace pregrasp {
+namespace {
+
+double PeakMegabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+RunSummary::Seconds SumSeconds(const Timeline& timeline) {
+  RunSummary::Seconds seconds;
+  const auto take = [&](const char* stage, std::optional<double>& into) {
+    const auto found = timeline.seconds().find(stage);
+    if (found != timeline.seconds().end()) into = found->second;
+  };
+  take("geometry", seconds.geometry);
+  take("graph", seconds.graph);
+  take("trajectory", seconds.trajectory);
+  take("grasp", seconds.grasp);
+  take("motion", seconds.motion);
+  return seconds;
+}
+
+std::string SceneLabel(const Scene& scene) { return scene.file.empty() ? scene.name : scene.file; }
+
+}  // namespace
+
+Session::Session(Scene scene, const SessionConfig& config) : config_(config) {
+  job_ = std::make_unique<Job>(
+      JobSetup{std::move(scene), config.seed, config.planner, config.weights}, config.threads);
+  timeline_ = std::make_unique<Timeline>(*job_);
+  start_ = &timeline_->root();
+  drawer_ = std::make_unique<PictureDrawer>(
+      job_->scene(), PictureLabels{config.seed, SceneLabel(job_->scene()), config.command});
+  timeline_->SetListener([this](const Node& node) {
+    if (recorder_) recorder_->Add(node);
+  });
+}
+
+Session::~Session() = default;
+
+const Session::Node& Session::Settle(double seconds) {
+  if (timeline_->nodes().size() > 1) {
+    throw InputError("", "", "to settle before anything else is done", "a later step");
+  }
+  start_ = &timeline_->Do(*start_, Verb::kSettle, {{"seconds", seconds}});
+  return *start_;
+}
+
+void Session::Shoot(const Node& node, const Shot& shot) {
+  shot.config.Validate();
+  shots_[node.number] = shot;
+  if (recorder_) recorder_->Shoot(node, shot);
+}
+
+void Session::ShootToFile(const Node& node, const Shot& shot, const std::filesystem::path& file) {
+  shot.config.Validate();
+  if (config_.pictures == PictureMode::kNone) return;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  drawer_->Draw(node.facts, *timeline_, shot, file);
+}
+
+std::unique_ptr<Recorder> Session::OpenRecorder(const std::filesystem::path& directory,
+                                                PictureMode pictures) {
+  RunInfo info;
+  info.seed = config_.seed;
+  info.dt = world().config().dt;
+  info.command = config_.command;
+  info.scene_file = SceneLabel(scene());
+  auto recorder = std::make_unique<Recorder>(
+      directory, *timeline_, config_.pictures.value_or(pictures), *drawer_, std::move(info));
+  for (const auto& node : timeline_->nodes()) {
+    recorder->Add(*node);
+    const auto shot = shots_.find(node->number);
+    if (shot != shots_.end()) recorder->Shoot(*node, shot->second);
+  }
+  return recorder;
+}
+
+void Session::Record(const std::filesystem::path& directory, PictureMode pictures) {
+  if (recorder_) {
+    throw InputError("", "dir", "one recording at a time",
+                     "a second one, while " + recorder_->directory().string() + " is open");
+  }
+  recorder_ = OpenRecorder(directory, pictures);
+}
+
+// A summary of a plan says whether the object could be grasped at the start.
+void Session::CompleteVerdict() {
+  for (const auto& node : timeline_->nodes()) {
+    if (node->command.verb != Verb::kCertify) continue;
+    timeline_->Do(timeline_->root(), Verb::kVerdict);
+    return;
+  }
+}
+
+void Session::Finish(Recorder& recorder, const std::optional<std::string>& status,
+                     const Node* node) {
+  recorder.DrawPending();
+  const Node& end = node != nullptr ? *node : FindFurthest(*timeline_);
+  RunSummary summary = Summarize(*timeline_, end);
+  if (status) summary.status = *status;
+  summary.seconds = SumSeconds(*timeline_);
+  summary.seconds.total =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - opened_).count();
+  summary.peak_rss_mb = PeakMegabytes();
+  recorder.Finish(end, std::move(summary));
+}
+
+std::filesystem::path Session::Save(const std::optional<std::filesystem::path>& directory,
+                                    const Node* node) {
+  if (recorder_ && (!directory || *directory == recorder_->directory())) {
+    std::filesystem::path where = recorder_->directory();
+    FinishRecording(std::nullopt, node);
+    return where;
+  }
+  if (!directory) throw InputError("", "dir", "a folder, as nothing is recorded", "nothing");
+  CompleteVerdict();
+  const std::unique_ptr<Recorder> recorder = OpenRecorder(*directory, PictureMode::kKey);
+  Finish(*recorder, std::nullopt, node);
+  return *directory;
+}
+
+void Session::FinishRecording(const std::optional<std::string>& status, const Node* node) {
+  if (!recorder_) return;
+  if (!status) CompleteVerdict();
+  const std::unique_ptr<Recorder> recorder = std::move(recorder_);
+  Finish(*recorder, status, node);
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,123 @@
+#include "app/job/run_policy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/job/facts_json.h"
+#include "tests/job/fixture.h"
+#include "tests/networks/random_network.h"
+#include "tests/test_folder.h"
+
+namespace pregrasp {
+namespace {
+
+// Short runs with networks whose weights are random: what they find is poor, how they run is not.
+class RunPolicyTest : public testing::Test {
+ protected:
+  RunPolicyTest() {
+    WriteTensors(folder_.path() / "score.safetensors", MakeRandomScore(3));
+    WriteTensors(folder_.path() / "generator.safetensors", MakeRandomGenerator(4));
+    setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);  // for verdicts
+    setup_.scene = MakeRulerScene();
+    setup_.weights = folder_.path();
+    setup_.config.graph.samples = 1;
+    setup_.config.mppi.samples = 6;
+    setup_.config.mppi.iterations = 3;
+    setup_.config.grasp_samples = 2;
+    setup_.config.completion.max_refinements = 2;
+    setup_.config.completion.max_solves = 1;
+    setup_.config.completion.grasp.kinematics.ik.max_starts = 2;
+    run_.paths = 2;
+  }
+  ~RunPolicyTest() override { ClearInterrupt(); }
+
+  static std::vector<std::string> Ids(const Timeline& timeline) {
+    std::vector<std::string> ids;
+    for (const auto& node : timeline.nodes()) ids.push_back(node->id());
+    return ids;
+  }
+
+  const TestFolder folder_;
+  JobSetup setup_;
+  RunConfig run_;
+};
+
+TEST_F(RunPolicyTest, EveryStageIsAStep) {
+  Job job(setup_, 1);
+  Timeline timeline(job);
+  const RunResult result = RunPlanner(timeline, run_, {});
+  EXPECT_EQ(result.reasons.size(), 2U);
+  const std::vector<std::string> ids = Ids(timeline);
+  const std::vector<std::string> head(ids.begin(), ids.begin() + 9);
+  EXPECT_EQ(head, (std::vector<std::string>{"scene.start", "scene.verdict", "graph.mesh",
+                                            "graph.score", "graph.prune.1", "graph.prune.2",
+                                            "graph.prune.3", "paths.rank.1", "path.1.mppi.1"}));
+  for (const char* id : {"path.1.mppi.3", "path.1.certify", "paths.rank.2", "path.2.certify"}) {
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 1) << id;
+  }
+}
+
+TEST_F(RunPolicyTest, TheSummarySaysWhatWasDone) {
+  Job job(setup_, 1);
+  Timeline timeline(job);
+  const RunResult result = RunPlanner(timeline, run_, {});
+  const RunSummary summary = Summarize(timeline, *result.end);
+  EXPECT_EQ(summary.status, result.status);
+  EXPECT_NE(summary.status, "ok");
+  EXPECT_EQ(summary.n_paths, 2);
+  EXPECT_EQ(summary.counts.nodes, 1600);
+  EXPECT_GE(summary.counts.kept, 160 - 1);
+  EXPECT_EQ(summary.counts.iterations, 6);
+  EXPECT_EQ(summary.counts.rollouts, 36);
+  EXPECT_EQ(summary.start_grasps.certified, true);
+}
+
+TEST_F(RunPolicyTest, TwoThreadsGiveTheFactsOfOne) {
+  Job one(setup_, 1), two(setup_, 2);
+  Timeline a(one), b(two);
+  RunPlanner(a, run_, {});
+  RunPlanner(b, run_, {});
+  ASSERT_EQ(a.nodes().size(), b.nodes().size());
+  for (std::size_t i = 0; i < a.nodes().size(); ++i) {
+    const auto difference = CompareFacts(a.nodes()[i]->facts, b.nodes()[i]->facts);
+    EXPECT_FALSE(difference.has_value()) << a.nodes()[i]->id() << ": " << difference->field;
+  }
+}
+
+TEST_F(RunPolicyTest, AGraspableStartIsNotPlannedFor) {
+  // The ruler, 8 cm over the edge.
+  setup_.scene.object().X_WB.translation().x() = -0.05;
+  Job job(setup_, 2);
+  Timeline timeline(job);
+  EXPECT_EQ(RunPlanner(timeline, run_, {}).status, "start_graspable");
+  EXPECT_EQ(Ids(timeline), (std::vector<std::string>{"scene.start", "scene.verdict"}));
+}
+
+TEST_F(RunPolicyTest, AnInterruptLeavesWhatWasDone) {
+  Job job(setup_, 1);
+  Timeline timeline(job);
+  const auto interrupt = [](const RunProgress& progress) {
+    if (progress.stage == "path 1 of 2, trajectory" && progress.done == 2) RequestInterrupt();
+  };
+  EXPECT_THROW(RunPlanner(timeline, run_, interrupt), Interrupted);
+  ClearInterrupt();
+  EXPECT_EQ(timeline.last().id(), "path.1.mppi.2");
+}
+
+TEST_F(RunPolicyTest, MissingWeightsAreBadInputThatNamesTheFile) {
+  std::filesystem::remove(folder_.path() / "score.safetensors");
+  Job job(setup_, 1);
+  Timeline timeline(job);
+  try {
+    RunPlanner(timeline, run_, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("score.safetensors"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace pregrasp

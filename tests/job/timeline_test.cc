@@ -1,0 +1,178 @@
+#include "app/job/timeline.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/job/facts_json.h"
+#include "tests/job/fixture.h"
+#include "tests/networks/random_network.h"
+#include "tests/test_folder.h"
+
+namespace pregrasp {
+namespace {
+
+using Node = Timeline::Node;
+using Json = nlohmann::json;
+
+// Short plans with networks whose weights are random.
+class TimelineTest : public testing::Test {
+ protected:
+  TimelineTest() {
+    WriteTensors(folder_.path() / "score.safetensors", MakeRandomScore(3));
+    WriteTensors(folder_.path() / "generator.safetensors", MakeRandomGenerator(4));
+  }
+  ~TimelineTest() override { ClearInterrupt(); }
+
+  std::unique_ptr<Job> MakeJob(int threads = 1) const {
+    JobSetup setup;
+    setup.scene = MakeRulerScene();
+    setup.weights = folder_.path();
+    setup.config.mesh.triangles = 12;
+    setup.config.graph.samples = 1;
+    setup.config.graph.top_percent = 20.0;
+    setup.config.cloud_points = 128;
+    setup.config.mppi.samples = 6;
+    setup.config.mppi.iterations = 4;
+    return std::make_unique<Job>(std::move(setup), threads);
+  }
+
+  static const Node& MakePath(Timeline& timeline) {
+    const Node* node = &timeline.Do(timeline.root(), Verb::kMesh);
+    node = &timeline.Do(*node, Verb::kScore);
+    while (!timeline.GetState(*node)->paths) node = &timeline.Do(*node, Verb::kPrune);
+    return timeline.Do(*node, Verb::kPath, {{"rank", 1}});
+  }
+
+  const TestFolder folder_;
+};
+
+TEST_F(TimelineTest, TheSameCommandFromTheSameNodeIsTheSameNode) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  const Node& path = MakePath(timeline);
+  const Node& first = timeline.Do(path, Verb::kIterate);
+  const std::size_t count = timeline.nodes().size();
+  EXPECT_EQ(&timeline.Do(path, Verb::kIterate), &first);
+  // Settings that change nothing are no other command.
+  EXPECT_EQ(&timeline.Do(path, Verb::kIterate, {{"settings", {{"mppi.samples", 6}}}}), &first);
+  EXPECT_EQ(timeline.nodes().size(), count);
+}
+
+TEST_F(TimelineTest, AnotherCommandGetsTheNextFreeBranchWhichWhatFollowsCarriesOn) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  const Node& path = MakePath(timeline);
+  const Node& first = timeline.Do(path, Verb::kIterate);
+  EXPECT_EQ(first.id(), "path.1.mppi.1");
+  const Node& second = timeline.Do(first, Verb::kIterate);
+  const Node& fork = timeline.Do(first, Verb::kIterate, {{"settings", {{"mppi.sigma", 0.3}}}});
+  EXPECT_EQ(second.id(), "path.1.mppi.2");
+  EXPECT_EQ(fork.id(), "path.1.mppi.2~2");
+  EXPECT_EQ(std::get<IterationFacts>(fork.facts.details).sigma,
+            0.3 * std::pow(0.3 / 0.3, 1.0 / 3.0));
+  EXPECT_EQ(timeline.Do(fork, Verb::kCertify).id(), "path.1.certify~2");
+  EXPECT_EQ(timeline.Do(second, Verb::kCertify).id(), "path.1.certify");
+  const Node& third = timeline.Do(first, Verb::kIterate, {{"settings", {{"mppi.sigma", 0.5}}}});
+  EXPECT_EQ(third.id(), "path.1.mppi.2~3");
+}
+
+TEST_F(TimelineTest, IdsAreUniqueWhateverIsDoneAndUndone) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  MakePath(timeline);
+  Rng rng(11);
+  const Verb verbs[] = {Verb::kMesh, Verb::kScore, Verb::kPrune, Verb::kPath, Verb::kIterate,
+                        Verb::kCertify, Verb::kWait, Verb::kTouch};
+  for (int i = 0; i < 150; ++i) {
+    const Node& from = *timeline.nodes()[rng.UniformInt(timeline.nodes().size())];
+    const Verb verb = verbs[rng.UniformInt(std::size(verbs))];
+    Json options = Json::object();
+    if (verb == Verb::kPath) options["rank"] = 1 + rng.UniformInt(3);
+    if (verb == Verb::kWait) options["steps"] = 1 + rng.UniformInt(3);
+    if (verb == Verb::kTouch) options = {{"finger", "index"}, {"p_OC", {0.1, 0.0, 0.0015}}};
+    if (rng.UniformInt(3) == 0) options["settings"] = {{"mppi.sigma", 0.5 + rng.UniformInt(2)}};
+    try {
+      timeline.Do(from, verb, options);
+    } catch (const InputError&) {
+      // The command does not fit there; nothing was done.
+    }
+  }
+  std::set<std::string> ids;
+  for (const auto& node : timeline.nodes()) {
+    EXPECT_TRUE(ids.insert(node->id()).second) << node->id();
+    EXPECT_EQ(&timeline.Find(node->id()), node.get());
+  }
+  EXPECT_GT(ids.size(), 40U);
+}
+
+TEST_F(TimelineTest, TheJournalAloneGivesTheSameFactsOnAnyNumberOfThreads) {
+  const auto job = MakeJob(1), again = MakeJob(2);
+  Timeline timeline(*job), replayed(*again);
+  const Node* node = &MakePath(timeline);
+  for (int i = 0; i < 2; ++i) node = &timeline.Do(*node, Verb::kIterate);
+  timeline.Do(*node->parent, Verb::kIterate, {{"settings", {{"mppi.sigma", 0.2}}}});
+  timeline.Do(*node, Verb::kCertify);
+  timeline.Do(timeline.root(), Verb::kWait, {{"steps", 5}});
+  for (const auto& done : timeline.nodes()) {
+    if (done->parent == nullptr) continue;
+    const Command command = CommandFromJson(CommandToJson(done->command), "journal");
+    const Node& redone =
+        replayed.Do(replayed.Find(command.node), command.verb, command.options);
+    const auto difference = CompareFacts(done->facts, redone.facts);
+    EXPECT_FALSE(difference.has_value()) << done->id() << ": " << difference->field;
+  }
+}
+
+TEST_F(TimelineTest, AStateThatWasDroppedIsComputedAgainTheSame) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  const Node& path = MakePath(timeline);
+  const Node& iteration = timeline.Do(path, Verb::kIterate);
+  const std::vector<double> mean = timeline.GetState(iteration)->optimization->mean;
+  const Node* sim = &timeline.root();
+  for (int i = 0; i < 450; ++i) sim = &timeline.Do(*sim, Verb::kWait, {{"steps", 0}});
+  EXPECT_EQ(timeline.GetState(iteration)->optimization->mean, mean);
+}
+
+TEST_F(TimelineTest, WhatDoesNotFitIsRefusedAndLeavesNoNode) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  const auto refused = [&](const Node& from, Verb verb, const Json& options) {
+    const std::size_t count = timeline.nodes().size();
+    EXPECT_THROW(timeline.Do(from, verb, options), InputError) << VerbName(verb);
+    EXPECT_EQ(timeline.nodes().size(), count);
+  };
+  for (const Verb verb : {Verb::kScore, Verb::kPrune, Verb::kIterate, Verb::kCertify, Verb::kGrasp,
+                          Verb::kFill, Verb::kSmooth}) {
+    refused(timeline.root(), verb, Json::object());
+  }
+  refused(timeline.root(), Verb::kPath, {{"rank", 1}});
+  refused(timeline.root(), Verb::kLift, {{"grasp", 1}});
+  refused(timeline.root(), Verb::kKeyframe, {{"grasp", 1}});
+  refused(timeline.root(), Verb::kFrame, {{"frame", 1}});
+  refused(timeline.root(), Verb::kSettle, {{"seconds", -1.0}});
+  refused(timeline.root(), Verb::kWait, {{"steps", -1}});
+  refused(timeline.root(), Verb::kTouch, {{"finger", "toe"}, {"p_OC", {0, 0, 0}}});
+  refused(timeline.root(), Verb::kMesh, {{"settings", {{"mesh.triangels", 12}}}});
+  EXPECT_THROW(timeline.Find("scene.strat"), InputError);
+}
+
+TEST_F(TimelineTest, AnInterruptedActionIsAStepThatRedoesToTheSame) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  RequestInterrupt();
+  EXPECT_THROW(timeline.Do(timeline.root(), Verb::kWait, {{"steps", 50}}), Interrupted);
+  ClearInterrupt();
+  const Node& node = timeline.last();
+  EXPECT_EQ(node.id(), "sim.1");
+  EXPECT_TRUE(std::get<SimulationFacts>(node.facts.details).stopped);
+  const Applied again = timeline.Try(timeline.root(), node.command.verb, node.command.options);
+  StepFacts facts = again.facts;
+  EXPECT_FALSE(CompareFacts(facts, node.facts).has_value());
+}
+
+}  // namespace
+}  // namespace pregrasp

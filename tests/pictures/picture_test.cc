@@ -1,0 +1,285 @@
+#include "app/pictures/picture.h"
+
+#include <gtest/gtest.h>
+
+#include "app/core/error.h"
+#include "app/geometry/tessellate.h"
+#include "app/pictures/camera.h"
+#include "app/pictures/forces.h"
+#include "app/pictures/overlay.h"
+#include "app/pictures/words.h"
+#include "app/job/timeline.h"
+#include "render/palette.h"
+#include "tests/job/fixture.h"
+
+namespace pregrasp {
+namespace {
+
+using Node = Timeline::Node;
+
+// The ruler, pressed and pulled.
+class PictureMakerTest : public testing::Test {
+ protected:
+  static JobSetup Setup() {
+    JobSetup setup;
+    setup.scene = MakeRulerScene();
+    return setup;
+  }
+
+  const Node& Press(double x, double depth) {
+    const Node& touched = timeline_.Do(timeline_.root(), Verb::kTouch,
+                                       {{"finger", "index"}, {"p_OC", {x, 0.0, 0.0015}}});
+    target_ = touched.facts.fingers[1].p_WTarget - Vector3(0, 0, depth);
+    return Move(touched, 0.25);
+  }
+  const Node& Pull(const Node& from, double by) {
+    target_.x() += by;
+    return Move(from, 0.75);
+  }
+  const Node& Move(const Node& from, double seconds) {
+    return timeline_.Do(from, Verb::kMove,
+                        {{"finger", "index"},
+                         {"p_WTarget", {target_.x(), target_.y(), target_.z()}},
+                         {"seconds", seconds}});
+  }
+  RenderScene Compose(const StepFacts& step, const PictureConfig& config = {}) const {
+    return maker_.Compose(step, timeline_, {}, config);
+  }
+
+  Job job_{Setup(), 1};
+  Timeline timeline_{job_};
+  PictureMaker maker_{job_.scene()};
+  Vector3 target_ = Vector3::Zero();
+};
+
+TEST_F(PictureMakerTest, ShowsEveryBodyTheFingerItsForceAndWhereTheObjectWas) {
+  const StepFacts& step = Pull(Press(0.11, 0.012), 0.03).facts;
+  const RenderScene scene = Compose(step);
+  ASSERT_EQ(scene.bodies.size(), 2U + 1U + 3U);  // ruler, table; ghost; tip and two links
+  EXPECT_EQ(scene.bodies[2].shading, Shading::kGhost);
+  EXPECT_EQ(scene.bodies[2].mesh, scene.bodies[0].mesh);
+  EXPECT_EQ(scene.cones.size(), 1U);
+  ASSERT_EQ(scene.arrows.size(), 2U);  // finger and weight
+  // The force's arrow ends at the contact, and the fingertip touches there from outside.
+  const Vector3 p_WF = step.fingers[1].p_WF;
+  EXPECT_LT((scene.arrows[0].p_W + scene.arrows[0].v_W - p_WF).norm(), 1e-12);
+  const double radius = FingertipRadius(Finger::kIndex);
+  EXPECT_NEAR((scene.bodies[3].X_WB.translation() - p_WF).norm(), radius, 1e-12);
+  ASSERT_EQ(scene.labels.size(), 2U);
+  EXPECT_EQ(scene.labels[0].text.find("index 0."), 0U) << scene.labels[0].text;
+  EXPECT_EQ(scene.labels[1].text, "weight 0.25 N");
+}
+
+TEST_F(PictureMakerTest, ATraceShowsTheNormalOfEveryContactPointAndTheForcesOnTheObject) {
+  const StepFacts& step = Pull(Press(0.11, 0.012), 0.03).facts;
+  PictureConfig config;
+  config.trace = true;
+  config.forces = false;
+  const RenderScene scene = Compose(step, config);
+  ASSERT_GE(step.contacts.size(), 4U);
+  EXPECT_GE(scene.arrows.size(), step.contacts.size());
+  for (const RenderArrow& arrow : scene.arrows) {
+    EXPECT_GT(arrow.v_W.z(), 0.0);  // the table pushes upwards
+  }
+}
+
+TEST_F(PictureMakerTest, OverlaysCanBeLeftOut) {
+  PictureConfig config;
+  config.forces = config.cones = config.contacts = config.ghost = config.fingers = config.axes =
+      false;
+  const RenderScene scene = Compose(Pull(Press(0.11, 0.012), 0.03).facts, config);
+  EXPECT_EQ(scene.bodies.size(), 2U);
+  EXPECT_TRUE(scene.arrows.empty() && scene.cones.empty() && scene.points.empty());
+  EXPECT_TRUE(scene.labels.empty());
+  EXPECT_FALSE(scene.axes);
+  config.width = 2;
+  EXPECT_THROW(config.Validate(), InputError);
+}
+
+TEST_F(PictureMakerTest, TheAutomaticCameraHasTheObjectInSightWhereverItIs) {
+  for (const double x : {-0.3, -0.16, 0.0, 0.5}) {
+    StepFacts step = timeline_.root().facts;
+    step.bodies[0].p_WB.x() = x;
+    const RenderScene scene = Compose(step);
+    MatrixX3 ends(2, 3);
+    ends << x - 0.15, 0, 0, x + 0.15, 0, 0;
+    EXPECT_TRUE(IsInSight(scene.camera, ends, 1280.0 / 720.0, 0.0)) << x;
+  }
+}
+
+TEST_F(PictureMakerTest, AStripOfSmallMotionsHasOneCamera) {
+  StepFacts step = timeline_.root().facts;
+  const RenderCamera first = Compose(step).camera;
+  step.bodies[0].p_WB.x() += 0.03;
+  EXPECT_EQ(Compose(step).camera.p_WCam, first.p_WCam);
+}
+
+// Steps of a plan, made up: pictures need no more than facts.
+class PlannedSteps : public FactsSource {
+ public:
+  explicit PlannedSteps(const StepFacts& start) {
+    steps_[start.id] = start;
+    StepFacts mesh = Follow(start, "graph.mesh", Verb::kMesh);
+    MeshFacts facts;
+    facts.triangles = 1;
+    facts.nodes = 1;
+    facts.mesh.V = MatrixX3::Identity(3, 3);
+    facts.mesh.F.resize(1, 3);
+    facts.mesh.F << 0, 1, 2;
+    mesh.details = facts;
+    steps_[mesh.id] = mesh;
+    StepFacts score = Follow(mesh, "graph.score", Verb::kScore);
+    score.details = ScoreFacts{1, {0.5}, {0.5}, {0.0}, {}, {}};
+    steps_[score.id] = score;
+  }
+  static StepFacts Follow(const StepFacts& before, const std::string& id, Verb verb) {
+    StepFacts step = before;
+    step.id = id;
+    step.command = {verb, before.id, nlohmann::json::object()};
+    return step;
+  }
+  const StepFacts& Get(const std::string& id) const override { return steps_.at(id); }
+
+ private:
+  std::map<std::string, StepFacts> steps_;
+};
+
+TEST_F(PictureMakerTest, AnOverlayIsShownByItsName) {
+  const PlannedSteps steps(timeline_.root().facts);
+  const auto compose = [&](const StepFacts& step, const PictureConfig& config) {
+    return maker_.Compose(step, steps, {}, config);
+  };
+  PictureConfig config;
+  const StepFacts& score = steps.Get("graph.score");
+  const RenderScene all = compose(score, config);
+  EXPECT_EQ(all.bodies[0].mesh->F.rows(), 1);
+  EXPECT_EQ(all.bodies[0].face_colors[0].g, ScoreColor(1.0).g);
+  EXPECT_EQ(all.legend.title, "best score here");
+  config.scores = false;
+  EXPECT_NE(compose(score, config).bodies[0].face_colors[0].g, ScoreColor(1.0).g);
+  EXPECT_EQ(compose(score, config).legend.title, "");
+  config.mesh = false;
+  EXPECT_GT(compose(score, config).bodies[0].mesh->F.rows(), 1);
+
+  StepFacts iteration = PlannedSteps::Follow(score, "path.1.mppi.1", Verb::kIterate);
+  IterationFacts facts;
+  facts.rollouts.resize(9);
+  iteration.details = facts;
+  const std::size_t ghosts = compose(iteration, {}).bodies.size();
+  config = {};
+  config.rollouts = false;
+  EXPECT_EQ(compose(iteration, config).bodies.size() + 6U, ghosts);
+
+  StepFacts frame = PlannedSteps::Follow(score, "motion.key.1", Verb::kKeyframe);
+  frame.details = FrameFacts{};
+  config = {};
+  config.hand = false;
+  EXPECT_GT(compose(frame, {}).bodies.size(), compose(frame, config).bodies.size() + 10U);
+}
+
+TEST_F(PictureMakerTest, KeyStepsAreTheFirstGraspsOfEachKindAndEveryFifthIteration) {
+  const PlannedSteps steps(timeline_.root().facts);
+  const StepFacts& score = steps.Get("graph.score");
+  StepFacts iteration = PlannedSteps::Follow(score, "path.1.mppi.1", Verb::kIterate);
+  std::vector<int> keys;
+  for (int i = 1; i <= 12; ++i) {
+    IterationFacts facts;
+    facts.iteration = i;
+    facts.converged = i == 12;
+    iteration.details = facts;
+    if (IsKeyStep(iteration, steps)) keys.push_back(i);
+  }
+  EXPECT_EQ(keys, (std::vector<int>{1, 5, 10, 12}));
+  EXPECT_TRUE(IsKeyStep(timeline_.root().facts, timeline_));
+  EXPECT_FALSE(IsKeyStep(Press(0.11, 0.012).facts, timeline_));
+}
+
+TEST(ForcesTest, PressedPulledRulerObeysTheSpringAndTheCone) {
+  JobSetup setup;
+  setup.scene = MakeRulerScene();
+  Job job(setup, 1);
+  Timeline timeline(job);
+  const Node& touched = timeline.Do(timeline.root(), Verb::kTouch,
+                                    {{"finger", "index"}, {"p_OC", {0.11, 0.0, 0.0015}}});
+  const Vector3 start = touched.facts.fingers[1].p_WTarget;
+  const auto move = [&](const Node& from, double x, double z, double seconds) -> const Node& {
+    return timeline.Do(from, Verb::kMove,
+                       {{"finger", "index"},
+                        {"p_WTarget", {start.x() + x, start.y(), start.z() + z}},
+                        {"seconds", seconds}});
+  };
+  const Node& pressed =
+      timeline.Do(move(touched, 0.0, -0.012, 0.5), Verb::kWait, {{"steps", 120}});
+  // At rest the spring's 12 mm give 0.6 N; the table carries that and the weight.
+  const auto split_of = [&](const StepFacts& step) {
+    return SplitFingerForce(job.scene(), step.object().q_WB, step.fingers[1]);
+  };
+  ForceSplit split = split_of(pressed.facts);
+  EXPECT_NEAR(split.normal, 50.0 * 0.012, 1e-3);
+  EXPECT_NEAR(split.limit, 0.8 * split.normal, 1e-12);
+  std::vector<SupportForce> supports = CalcSupportForces(job.scene(), pressed.facts.contacts);
+  ASSERT_EQ(supports.size(), 1U);
+  EXPECT_EQ(supports[0].body, 1);
+  EXPECT_NEAR(supports[0].f_W.z(), 0.6 + 0.025 * 9.81, 1e-3);
+  // Pulled, it follows: the table gives way at 0.3 of what it carries, the fingertip holds.
+  const Node& pulled = move(pressed, 0.05, -0.012, 1.5);
+  const auto& motion = std::get<SimulationFacts>(pulled.facts.details);
+  EXPECT_GT(motion.moved_mm, 40.0);
+  EXPECT_LT(motion.moved_mm, 50.0);
+  split = split_of(pulled.facts);
+  EXPECT_LT(split.tangential, split.limit);
+  supports = CalcSupportForces(job.scene(), pulled.facts.contacts);
+  EXPECT_TRUE(supports.at(0).slipping);
+  EXPECT_NEAR(supports[0].split.tangential, 0.3 * supports[0].split.normal, 1e-3);
+}
+
+TEST(IsInSightTest, KnowsThePyramidOfSight) {
+  const RenderCamera camera{{0, -1, 0}, {0, 0, 0}, 90.0};
+  const auto sees = [&](double x, double y, double z) {
+    MatrixX3 p(1, 3);
+    p << x, y, z;
+    return IsInSight(camera, p, 2.0, 0.0);
+  };
+  EXPECT_TRUE(sees(0, 0, 0.99));
+  EXPECT_FALSE(sees(0, 0, 1.01));
+  EXPECT_TRUE(sees(1.99, 0, 0));
+  EXPECT_FALSE(sees(2.01, 0, 0));
+  EXPECT_FALSE(sees(0, -2, 0));  // behind
+}
+
+TEST(ChooseViewDirectionTest, LooksWhereNothingIsInTheWay) {
+  // A wall close in front, where the preferred view would look from.
+  Scene scene = MakeRulerScene();
+  Body wall;
+  wall.name = "wall";
+  wall.shape = Box{{0.8, 0.02, 0.6}};
+  wall.X_WB.translation() = Vector3(-0.4, -0.05, 0.3);
+  const TriangleMesh ruler = Tessellate(scene.object().shape);
+  TriangleMesh ruler_W = ruler;
+  ruler_W.V.rowwise() += scene.object().X_WB.translation().transpose();
+  EXPECT_LT(ChooseViewDirection(ruler_W, EnvironmentDistance(scene)).y(), 0.0);
+  scene.bodies.push_back(wall);
+  EXPECT_GT(ChooseViewDirection(ruler_W, EnvironmentDistance(scene)).y(), 0.0);
+}
+
+TEST_F(PictureMakerTest, TheWordsSayWhatDecidedTheMotion) {
+  const auto lines =
+      DescribeStep(job_.scene(), Pull(Press(0.11, 0.012), 0.03).facts, timeline_);
+  EXPECT_EQ(lines[0], "The index's target moves by (30, 0, 0) mm in 0.75 s.");
+  EXPECT_EQ(lines[1].find("The index sticks to the ruler and takes it along: that needs 0."), 0U)
+      << lines[1];
+  EXPECT_EQ(lines[2].find("ruler moved\t2"), 0U) << lines[2];
+  const Node& waited = timeline_.Do(timeline_.root(), Verb::kWait, {{"seconds", 0.1}});
+  EXPECT_EQ(DescribeStep(job_.scene(), waited.facts, timeline_)[1],
+            "Nothing touches the ruler and it stays at rest.");
+}
+
+TEST_F(PictureMakerTest, TheWordsSayThatALightTouchSlidesOverTheRuler) {
+  // Pressed too lightly (0.05 N), the finger cannot overcome the table.
+  const auto lines = DescribeStep(job_.scene(), Pull(Press(0.05, 0.001), 0.03).facts, timeline_);
+  EXPECT_EQ(lines[1].find("The index slides "), 0U) << lines[1];
+  EXPECT_NE(lines[1].find("over the ruler, which stays."), std::string::npos) << lines[1];
+}
+
+}  // namespace
+}  // namespace pregrasp
