@@ -27,16 +27,20 @@ int Run(int argc, char** argv) {
                "pregrasp");
   app.require_subcommand(0, 1);
   app.set_help_flag("-h,--help", "This text");
-  app.footer("Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of ours.");
+  app.footer(
+      "Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of "
+      "ours.");
   const Subcommand command(app);
   Action action;
   AddCheck(command, action);
   AddDataset(command, action);
+  AddDiff(command, action);
   AddInfo(command, action);
   AddRepl(command, action);
   AddRun(command, action);
   AddScript(command, action);
   AddShow(command, action);
+  AddVerify(command, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -76,9 +76,7 @@ void GraphScore(lua_State* L, LuaGraph& graph) {
   CountMemory(L, kGraphKib);
 }
 
-bool IsConnected(const LuaGraph& graph) {
-  return graph.graph()->stage() == GraphStage::kConnected;
-}
+bool IsConnected(const LuaGraph& graph) { return graph.graph()->stage() == GraphStage::kConnected; }
 
 bool GraphPruneStep(lua_State* L, LuaGraph& graph, const std::optional<int>& nodes) {
   RequireScores(*graph.graph());
@@ -94,7 +92,12 @@ bool GraphPruneStep(lua_State* L, LuaGraph& graph, const std::optional<int>& nod
 void GraphPrune(lua_State* L, LuaGraph& graph, const PruneOptions& options) {
   RequireScores(*graph.graph());
   nlohmann::json command = nlohmann::json::object();
-  if (!options.fields.empty()) command["settings"] = options.ToSettings();
+  if (!options.fields.empty()) {
+    command["settings"] = options.ToSettings();
+    if (graph.graph()->stage() != GraphStage::kScored) {
+      throw InputError("", "top_percent", "a graph that is not pruned yet", "one that is");
+    }
+  }
   graph.node = &PruneAll(graph.session->timeline(), *graph.node, std::move(command));
   CountMemory(L, 3 * kGraphKib);
 }
@@ -268,8 +271,9 @@ int PathsStages(LuaPaths& paths) { return paths.stages; }
 
 int PathsToString(lua_State* L) {
   const auto paths = FindObject<LuaPaths>(L, 1);
-  const std::string text = paths ? fmt::format("Paths({:.0f} of {} stages)", PathsCount(*paths), paths->stages)
-                                 : "Paths";
+  const std::string text =
+      paths ? fmt::format("Paths({:.0f} of {} stages)", PathsCount(*paths), paths->stages)
+            : "Paths";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
 }
@@ -289,13 +293,15 @@ std::string PathStepId(LuaPath& path) { return path.recorded() ? path.cursor.ste
 Pushed PathNodes(lua_State* L, LuaPath& path) {
   lua_createtable(L, static_cast<int>(path.path->nodes.size()), 0);
   for (std::size_t i = 0; i < path.path->nodes.size(); ++i) {
-    PushNode(L, path.cursor.state()->graph->nodes().at(static_cast<std::size_t>(path.path->nodes[i])));
+    PushNode(L,
+             path.cursor.state()->graph->nodes().at(static_cast<std::size_t>(path.path->nodes[i])));
     lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
   }
   return {1};
 }
 Pushed PathSiblings(lua_State* L, LuaPath& path) {
-  const std::vector<ContactPath> siblings = FindSiblings(*path.cursor.state()->graph, *path.path, kSiblings);
+  const std::vector<ContactPath> siblings =
+      FindSiblings(*path.cursor.state()->graph, *path.path, kSiblings);
   lua_createtable(L, static_cast<int>(siblings.size()), 0);
   for (std::size_t i = 0; i < siblings.size(); ++i) {
     RecordWriter(L, kSibling)
@@ -314,7 +320,8 @@ int PathToString(lua_State* L) {
     std::string nodes;
     for (const int id : path->path->nodes)
       nodes += fmt::format("{}{}", nodes.empty() ? "" : " > ", id);
-    text = fmt::format("Path(rank {}, {}, score {:.3f})", path->path->rank, nodes, path->path->score);
+    text =
+        fmt::format("Path(rank {}, {}, score {:.3f})", path->path->rank, nodes, path->path->score);
   }
   lua_pushlstring(L, text.data(), text.size());
   return 1;

@@ -6,7 +6,9 @@
 namespace pregrasp {
 namespace {
 
-const Schema kLift{"Lift", {"held", "reasons", "height", "shift_mm", "turn_deg", "slip_mm", "direction_W", "step_id"}};
+const Schema kLift{
+    "Lift",
+    {"held", "reasons", "height", "shift_mm", "turn_deg", "slip_mm", "direction_W", "step_id"}};
 
 constexpr int kGraspKib = 20;
 
@@ -40,8 +42,14 @@ Pushed GraspsItem(lua_State* L, LuaGrasps& grasps, int number) {
 int GraspsCount(LuaGrasps& grasps) { return static_cast<int>(grasps.grasps.size()); }
 int GraspsFeasible(LuaGrasps& grasps) { return grasps.node->progress.feasible; }
 int GraspsLifting(LuaGrasps& grasps) { return grasps.node->progress.lifted; }
-double GraspsSuccess(LuaGrasps& grasps) { return grasps.state()->grasps->r_suc(); }
-double GraspsRawSuccess(LuaGrasps& grasps) { return grasps.state()->grasps->r_suc_raw(); }
+double GraspsSuccess(LuaGrasps& grasps) {
+  const auto state = grasps.state();
+  return state->grasps ? state->grasps->r_suc() : 0.0;
+}
+double GraspsRawSuccess(LuaGrasps& grasps) {
+  const auto state = grasps.state();
+  return state->grasps ? state->grasps->r_suc_raw() : 0.0;
+}
 double GraspsLiftSuccess(LuaGrasps& grasps) {
   return grasps.grasps.empty() ? 0.0
                                : static_cast<double>(grasps.node->progress.lifted) /
@@ -117,8 +125,8 @@ Pushed GraspLift(lua_State* L, LuaGrasp& grasp) {
 
 int GraspToString(lua_State* L) {
   const auto grasp = FindObject<LuaGrasp>(L, 1);
-  const std::string text = grasp ? fmt::format("Grasp({}, {})", grasp->number(), grasp->facts().status)
-                                 : "Grasp";
+  const std::string text =
+      grasp ? fmt::format("Grasp({}, {})", grasp->number(), grasp->facts().status) : "Grasp";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
 }
@@ -129,13 +137,18 @@ Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOpt
   nlohmann::json command = nlohmann::json::object();
   if (!options.fields.empty()) command["settings"] = options.ToSettings();
   const std::shared_ptr<Session>& session = trajectory.session;
+  if (trajectory.state()->release->conditions.empty()) {  // a fingertip can be nowhere on it
+    PushObject(L, std::make_shared<LuaGrasps>(LuaGrasps{{session, trajectory.node}, {}}));
+    return {1};
+  }
   const Timeline::Node& end =
       CompleteGrasps(session->timeline(), *trajectory.node, std::move(command));
   auto grasps = std::make_shared<LuaGrasps>(LuaGrasps{{session, &end}, {}});
   for (const Timeline::Node* node : PathTo(end)) {
     if (node->number <= trajectory.node->number) continue;
     if (std::holds_alternative<GraspFacts>(node->facts.details)) {
-      grasps->grasps.push_back(std::make_shared<LuaGrasp>(LuaGrasp{{session, &end}, node, nullptr}));
+      grasps->grasps.push_back(
+          std::make_shared<LuaGrasp>(LuaGrasp{{session, &end}, node, nullptr}));
     } else if (const auto* lift = std::get_if<LiftFacts>(&node->facts.details)) {
       grasps->grasps[static_cast<std::size_t>(lift->grasp) - 1]->lift = node;
     }

@@ -41,8 +41,8 @@ bool SolveNext(lua_State* L, LuaMotion& motion) {
 void FinishMotion(lua_State* L, LuaMotion& motion) {
   if (IsFinished(motion)) return;
   while (SolveNext(L, motion)) ThrowIfInterrupted();
-  motion.node = &pregrasp::FinishMotion(motion.session->timeline(), *motion.node,
-                                        nlohmann::json::object());
+  motion.node =
+      &pregrasp::FinishMotion(motion.session->timeline(), *motion.node, nlohmann::json::object());
   CountMemory(L, kMotionKib);
 }
 
@@ -93,8 +93,8 @@ int NextFrame(lua_State* L) {
     const int frame = CountLoop(L);
     FinishMotion(L, *motion);
     if (frame > static_cast<int>(motion->state()->motion_state->frames.size())) return 0;
-    motion->Do(Verb::kFrame, {{"frame", frame}});
-    PushFrame(L, *motion, motion->node);
+    PushFrame(L, *motion,
+              &motion->session->timeline().Do(*motion->node, Verb::kFrame, {{"frame", frame}}));
     return 1;
   });
 }
@@ -131,19 +131,11 @@ void MotionShot(lua_State* L, LuaMotion& motion, const ShotOptions& options) {
 // Properties.
 
 bool MotionFinished(LuaMotion& motion) { return IsFinished(motion); }
-// nil before the first keyframe
-std::optional<int> MotionNumKeyframes(LuaMotion& motion) {
-  const auto state = motion.begun();
-  if (!state) return std::nullopt;
-  return static_cast<int>(state->motion->task().keyframes.size());
+int MotionNumKeyframes(LuaMotion& motion) {
+  return static_cast<int>(motion.GetTask().keyframes.size());
 }
 int MotionNumSolved(LuaMotion& motion) { return NumSolved(motion); }
-// nil before the first keyframe
-std::optional<int> MotionNumFrames(LuaMotion& motion) {
-  const auto state = motion.begun();
-  if (!state) return std::nullopt;
-  return static_cast<int>(state->motion->task().frames.size());
-}
+int MotionNumFrames(LuaMotion& motion) { return static_cast<int>(motion.GetTask().frames.size()); }
 std::string MotionOrder(LuaMotion& motion) {
   const auto order = motion.settings.find("motion.order");
   if (order != motion.settings.end()) return order->get<std::string>();
@@ -171,10 +163,9 @@ Pushed MotionSummaryOf(lua_State* L, LuaMotion& motion) {
 
 int MotionToString(lua_State* L) {
   const auto motion = FindObject<LuaMotion>(L, 1);
-  const std::string text =
-      motion ? fmt::format("Motion({} keyframes{})", MotionNumSolved(*motion),
-                           MotionFinished(*motion) ? ", finished" : "")
-             : "Motion";
+  const std::string text = motion ? fmt::format("Motion({} keyframes{})", MotionNumSolved(*motion),
+                                                MotionFinished(*motion) ? ", finished" : "")
+                                  : "Motion";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
 }
@@ -224,17 +215,29 @@ int FrameToString(lua_State* L) {
 
 }  // namespace
 
+MotionTask LuaMotion::GetTask() const {
+  if (const auto state = begun()) return state->motion->task();
+  const auto state = this->state();
+  PlannerConfig config = state->config;
+  ApplySettings(settings, config);
+  const Planner planner = state->planner->WithConfig(config);
+  const auto number = static_cast<std::size_t>(grasp);
+  return planner
+      .MakeMotion(*state->certificate, state->grasps->grasps[number - 1].result,
+                  state->lifts.at(grasp)->direction_W, config.motion)
+      .task();
+}
+
 void LuaMotion::SolveKeyframe() {
-  Do(Verb::kKeyframe,
-     node == first ? nlohmann::json{{"grasp", grasp}} : nlohmann::json::object());
+  Do(Verb::kKeyframe, node == first ? nlohmann::json{{"grasp", grasp}} : nlohmann::json::object());
 }
 
 Pushed GraspMotion(lua_State* L, LuaGrasp& grasp, const MotionOptions& options) {
   if (!grasp.facts().feasible) throw InputError("", "", "a feasible grasp", grasp.facts().status);
-  PushObject(L, std::make_shared<LuaMotion>(LuaMotion{
-                    {grasp.all.session, grasp.all.node, options.ToSettings()},
-                    grasp.all.node,
-                    grasp.number()}));
+  PushObject(L, std::make_shared<LuaMotion>(
+                    LuaMotion{{grasp.all.session, grasp.all.node, options.ToSettings()},
+                              grasp.all.node,
+                              grasp.number()}));
   CountMemory(L, kMotionKib);
   return {1};
 }

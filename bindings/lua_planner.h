@@ -11,8 +11,9 @@
 
 namespace pregrasp {
 
-// The planner's stages as scripts hold them: cursors into the session's timeline. Doing something moves an object
-// on, going back moves it to an earlier step, a fork is another cursor at the same one.
+// The planner's stages as scripts hold them: cursors into the session's timeline. Doing something
+// moves an object on, going back moves it to an earlier step, a fork is another cursor at the same
+// one.
 
 /// A place in a session's timeline.
 struct Cursor {
@@ -73,9 +74,9 @@ struct LuaGrasps : Cursor {
 };
 
 struct LuaGrasp {
-  Cursor all;                               ///< after the lifts of all grasps
-  const Timeline::Node* step = nullptr;     ///< its own
-  const Timeline::Node* lift = nullptr;     ///< null if it was not lifted
+  Cursor all;                            ///< after the lifts of all grasps
+  const Timeline::Node* step = nullptr;  ///< its own
+  const Timeline::Node* lift = nullptr;  ///< null if it was not lifted
 
   const GraspFacts& facts() const { return std::get<GraspFacts>(step->facts.details); }
   int number() const { return facts().number; }
@@ -89,6 +90,8 @@ struct LuaMotion : Cursor {
   int grasp = 0;                          ///< that it ends in
   /// What it has come to; null before the first keyframe.
   std::shared_ptr<const JobState> begun() const { return node == first ? nullptr : state(); }
+  /// Its task, before the first keyframe too.
+  MotionTask GetTask() const;
   void SolveKeyframe();
 };
 

@@ -185,8 +185,8 @@ Pushed SessionVerdict(lua_State* L, Session& session) {
 
 Pushed SessionSimulate(lua_State* L, const std::shared_ptr<Session>& session,
                        const SimulateOptions& options) {
-  PushObject(L, std::make_shared<LuaSimulation>(
-                    LuaSimulation{session, &session->start(), options.trace}));
+  PushObject(
+      L, std::make_shared<LuaSimulation>(LuaSimulation{session, &session->start(), options.trace}));
   return {1};
 }
 
@@ -207,8 +207,7 @@ void SessionShot(lua_State* L, Session& session, const ShotOptions& options) {
 }
 
 Pushed SessionBody(lua_State* L, Session& session, const std::string& name) {
-  PushBody(L, session.world(), session.GetStart(),
-           FindBody(session.scene(), name));
+  PushBody(L, session.world(), session.GetStart(), FindBody(session.scene(), name));
   return {1};
 }
 
@@ -281,8 +280,8 @@ const ClassInfo& SessionClass() {
 }
 
 std::vector<const Schema*> SessionSchemas() {
-  return {&kSettleOptions, &kSettleResult, &kVerdict, &kSimulateOptions, &kRecordOptions,
-          &kShotOptions,   &kBody,         &kCloudOptions,    &kMeshOptions};
+  return {&kSettleOptions, &kSettleResult, &kVerdict,      &kSimulateOptions, &kRecordOptions,
+          &kShotOptions,   &kBody,         &kCloudOptions, &kMeshOptions};
 }
 
 }  // namespace pregrasp

@@ -39,8 +39,8 @@ struct LuaValue<Predicate> {
   static Predicate Read(lua_State* L, int index, const std::string& path);
 };
 
-/// break_when(f): from now on f sees the events of each physics step of the session's simulations, after each
-/// of their actions; the first one that it says yes to is where the action ended.
+/// break_when(f): from now on f sees the events of each physics step of the session's simulations,
+/// after each of their actions; the first one that it says yes to is where the action ended.
 void SessionBreakWhen(lua_State* L, const std::shared_ptr<Session>& session,
                       const Predicate& predicate);
 

@@ -80,7 +80,8 @@ namespace {
 
 constexpr int kBytesPerStepKib = 3;
 
-// Does an action, ended where break_when says, and moves on. Tells Lua's collector what the past has grown by.
+// Does an action, ended where break_when says, and moves on. Tells Lua's collector what the past
+// has grown by.
 // @returns whether break_when stopped it.
 bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
   RequireOutsidePredicate(L, sim.session);
@@ -90,8 +91,7 @@ bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
   bool stopped = false;
   if (HasPredicate(L, sim.session)) {
     Applied applied = timeline.Try(*sim.node, verb, options);
-    const std::optional<int> stop =
-        FindStop(L, sim.session, *applied.state->simulation, before);
+    const std::optional<int> stop = FindStop(L, sim.session, *applied.state->simulation, before);
     stopped = stop.has_value();
     if (stopped) {
       options["stopped_after"] = *stop + 1 - before;
@@ -147,7 +147,8 @@ int NumStates(const Timeline& timeline, const Timeline::Node& node) {
   return state->simulation ? state->simulation->num_states() : 1;
 }
 
-// Takes physics steps back, exactly: to the action that ended there, else to one that is stopped there.
+// Takes physics steps back, exactly: to the action that ended there, else to one that is stopped
+// there.
 void SimBack(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
   RequireOutsidePredicate(L, sim.session);
   Timeline& timeline = sim.session->timeline();
@@ -262,8 +263,9 @@ Pushed SimTrace(lua_State* L, LuaSimulation& sim) {
 
 int SimToString(lua_State* L) {
   const auto sim = FindObject<LuaSimulation>(L, 1);
-  const std::string text = sim ? fmt::format("Simulation({}, t = {:.3f} s)", sim->node->id(), SimTime(*sim))
-                               : "Simulation";
+  const std::string text =
+      sim ? fmt::format("Simulation({}, t = {:.3f} s)", sim->node->id(), SimTime(*sim))
+          : "Simulation";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
 }

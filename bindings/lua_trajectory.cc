@@ -124,10 +124,10 @@ std::string OptimizerStepId(LuaOptimizer& optimizer) { return optimizer.step_id(
 
 int OptimizerToString(lua_State* L) {
   const auto optimizer = FindObject<LuaOptimizer>(L, 1);
-  const std::string text =
-      optimizer ? fmt::format("Optimizer(path {}, iteration {})", optimizer->path_rank(),
-                              OptimizerIteration(*optimizer))
-                : "Optimizer";
+  const std::string text = optimizer
+                               ? fmt::format("Optimizer(path {}, iteration {})",
+                                             optimizer->path_rank(), OptimizerIteration(*optimizer))
+                               : "Optimizer";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
 }

@@ -87,6 +87,7 @@ nlohmann::json StageOptions::ToSettings() const {
     // As the configuration has it, so that 48.0 is 48.
     settings[name] = PlannerConfigJson(scratch)[name.substr(0, dot)][name.substr(dot + 1)];
   }
+  scratch.Validate();
   return settings;
 }
 

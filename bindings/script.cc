@@ -113,8 +113,8 @@ std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions
   config.threads = options.threads.value_or(context.config.threads);
   config.pictures = context.config.pictures;
   config.command = context.config.remake;
-  config.weights = context.config.weights.empty() ? DataFolder() / "assets" / "weights"
-                                                  : context.config.weights;
+  config.weights =
+      context.config.weights.empty() ? DataFolder() / "assets" / "weights" : context.config.weights;
   constexpr int kSessionKib = 2000;
   CountMemory(L, kSessionKib);
   return std::make_shared<Session>(std::move(scene), config);

@@ -78,7 +78,8 @@ int Info() {
 }  // namespace
 
 void AddInfo(const Subcommand& app, Action& action) {
-  const Subcommand command = app.AddCommand("info", "Versions, OpenGL renderer, weights, processor");
+  const Subcommand command =
+      app.AddCommand("info", "Versions, OpenGL renderer, weights, processor");
   command.OnChosen([&action] { action = [] { return Info(); }; });
 }
 

@@ -94,7 +94,8 @@ int Run(const RunOptions& options) {
 
 void AddRun(const Subcommand& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
-  const Subcommand command = app.AddCommand("run", "Plan: from a scene to a grasp and a hand motion");
+  const Subcommand command =
+      app.AddCommand("run", "Plan: from a scene to a grasp and a hand motion");
   command.Add("SCENE", options->scene, "The scene, a Lua file").Required();
   command.AddSeed(options->seed, "Seed of everything random");
   command.Add("--out", options->out,

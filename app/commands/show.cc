@@ -51,8 +51,9 @@ int Show(const ShowOptions& options) {
   if (!options.overlay.empty()) SetOverlays(shot.config, options.overlay);
   if (!options.size.empty()) SetSize(options.size, shot.config);
   shot.config.Validate();
-  PictureDrawer drawer(run.scene, {run.summary.seed, run.manifest.value("scene_file", run.scene.name),
-                                   run.manifest.value("command", "")});
+  PictureDrawer drawer(run.scene,
+                       {run.summary.seed, run.manifest.value("scene_file", run.scene.name),
+                        run.manifest.value("command", "")});
   drawer.Draw(step, run, shot, options.out);
   return 0;
 }
@@ -64,12 +65,14 @@ void AddShow(const Subcommand& app, Action& action) {
   const Subcommand command =
       app.AddCommand("show", "Draw a step of a finished run, without planning again");
   command.Add("RUN_DIR", options->run, "The run directory").Required();
-  command.Add("--step", options->step, "The step's id, as in steps.jsonl: path.1.mppi.5").Required();
+  command.Add("--step", options->step, "The step's id, as in steps.jsonl: path.1.mppi.5")
+      .Required();
   command.Add("--out", options->out, "The PNG file").Required();
   command.Add("--size", options->size, "WIDTHxHEIGHT in pixels; as the run took it by default");
-  command.Add("--overlay", options->overlay,
-              "What to show: forces, cones, contacts, trace, ghost, fingers, axes, mesh, scores, "
-              "rollouts, hand; as the run took it by default")
+  command
+      .Add("--overlay", options->overlay,
+           "What to show: forces, cones, contacts, trace, ghost, fingers, axes, mesh, scores, "
+           "rollouts, hand; as the run took it by default")
       .OneAtATime();
   command.OnChosen([options, &action] { action = [options] { return Show(*options); }; });
 }

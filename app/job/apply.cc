@@ -38,24 +38,6 @@ void Require(bool condition, const char* expected, const char* got) {
 
 namespace {
 
-// Applies the command's `settings` to the configuration.
-void ApplySettings(const Command& command, PlannerConfig& config) {
-  const auto settings = command.options.find("settings");
-  if (settings == command.options.end()) return;
-  for (const auto& [name, value] : settings->items()) {
-    FieldValue field;
-    if (value.is_boolean()) {
-      field = value.get<bool>();
-    } else if (value.is_string()) {
-      field = value.get<std::string>();
-    } else {
-      field = value.get<double>();
-    }
-    SetPlannerField(config, name, field);
-  }
-  config.Validate();
-}
-
 void ApplyVerb(internal::Application& a) {
   switch (a.command.verb) {
     case Verb::kOpen:
@@ -98,7 +80,9 @@ Applied Apply(Job& job, const std::shared_ptr<const JobState>& state, const Comm
   } else {
     next = *state;
   }
-  ApplySettings(command, next.config);
+  if (command.options.contains("settings")) {
+    ApplySettings(command.options["settings"], next.config);
+  }
   Applied applied;
   applied.facts.command = command;
   applied.facts.details = MakeDetails(command.verb);

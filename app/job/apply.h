@@ -16,14 +16,16 @@ struct Applied {
   bool interrupted = false;
 };
 
-/// The one way through the planner: does what `command` says to `state`, and tells it. A function of its
-/// arguments: the same job, state and command give the same facts to the last bit, on any number of threads.
+/// The one way through the planner: does what `command` says to `state`, and tells it. A function
+/// of its arguments: the same job, state and command give the same facts to the last bit, on any
+/// number of threads.
 /// @param state  null for Verb::kOpen only.
-/// @throws InputError for a command that does not fit the state, or options out of range; Interrupted.
+/// @throws InputError for a command that does not fit the state, or options out of range;
+/// Interrupted.
 Applied Apply(Job& job, const std::shared_ptr<const JobState>& state, const Command& command);
 
-/// Which of the summary's `seconds` a verb's time belongs to: "geometry", "graph", "trajectory", "grasp",
-/// "motion"; "" for none.
+/// Which of the summary's `seconds` a verb's time belongs to: "geometry", "graph", "trajectory",
+/// "grasp", "motion"; "" for none.
 const char* TimedStage(Verb verb);
 
 }  // namespace pregrasp

@@ -18,8 +18,8 @@ NodeFacts MakeNodeFacts(const ContactNode& node) {
 void BuildMesh(Application& a) {
   a.next.planner = a.job.GetPlanner(a.next.start, a.next.config);
   const PlannerConfig& config = a.next.config;
-  const auto graph = std::make_shared<const ContactGraph>(
-      a.next.planner->BuildGraph(config.mesh, config.graph));
+  const auto graph =
+      std::make_shared<const ContactGraph>(a.next.planner->BuildGraph(config.mesh, config.graph));
   a.facts.id = "graph.mesh";
   a.facts.details =
       MeshFacts{graph->num_triangles(), static_cast<int>(graph->nodes().size()), graph->mesh()};

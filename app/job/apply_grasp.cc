@@ -52,14 +52,13 @@ GraspFacts MakeGraspFacts(const JobState& state, int number) {
 }
 
 void TakeGrasp(Application& a) {
-  Require(a.next.certificate && a.next.certificate->certified, "a certified trajectory",
-          "one that is not");
+  Require(a.next.certificate != nullptr, "a trajectory that was put to certification", "none");
   if (!a.next.grasps || a.command.options.contains("settings")) {
     Require(a.next.num_grasps == 0, "settings of all samples before the first", "a later one");
     const Planner planner = a.next.planner->WithConfig(a.next.config);
     // What the generator is asked to complete depends on the settings.
-    a.next.release = std::make_shared<const ReleaseResult>(
-        planner.Release(*a.next.graph, *a.next.certificate));
+    a.next.release =
+        std::make_shared<const ReleaseResult>(planner.Release(*a.next.graph, *a.next.certificate));
     a.next.grasps = std::make_shared<const GraspSet>(
         planner.CompleteGrasps(*a.next.certificate, *a.next.release, a.next.path->rank));
   }

@@ -8,7 +8,8 @@
 namespace pregrasp::internal {
 namespace {
 
-// The world at a frame: the bodies where the task has them, the fingers where the hand has its tips.
+// The world at a frame: the bodies where the task has them, the fingers where the hand has its
+// tips.
 WorldState StateOfFrame(const Application& a, const MotionFrameTask& task) {
   WorldState state = a.next.start;
   state.t = task.t;
@@ -101,8 +102,8 @@ void SetMotionFacts(Application& a) {
 }
 
 void Fill(Application& a) {
-  Require(a.next.motion && a.next.motion_state->solved_keys.size() ==
-                               a.next.motion->task().keyframes.size(),
+  Require(a.next.motion &&
+              a.next.motion_state->solved_keys.size() == a.next.motion->task().keyframes.size(),
           "a motion with all keyframes", "one without");
   Require(!a.next.motion_state->filled, "a motion without its in-betweens", "one with them");
   MotionState state = *a.next.motion_state;

@@ -16,8 +16,8 @@ void Open(Application& a) {
 }
 
 void SettleStart(Application& a) {
-  Require(!a.next.planner && !a.next.simulation, "to settle before anything is planned or simulated",
-          "a later step");
+  Require(!a.next.planner && !a.next.simulation,
+          "to settle before anything is planned or simulated", "a later step");
   const double seconds = CommandOptions(a.command).Number("seconds");
   if (!(seconds > 0.0 && seconds <= kLongestSettle)) {
     throw InputError("", "seconds", "above 0 and at most 300 s", std::to_string(seconds));
@@ -26,8 +26,9 @@ void SettleStart(Application& a) {
   a.next.start.t = 0.0;
   a.next.start.step = 0;
   a.facts.id = "scene.settle";
-  a.facts.details = SettleFacts{seconds, 1e3 * result.largest.moved, RadToDeg(result.largest.rotated),
-                                result.at_rest, result.largest.body};
+  a.facts.details =
+      SettleFacts{seconds, 1e3 * result.largest.moved, RadToDeg(result.largest.rotated),
+                  result.at_rest, result.largest.body};
   SetWorldFacts(a.facts, a.job.world(), a.next.start, {});
 }
 

@@ -4,8 +4,8 @@
 
 namespace pregrasp::internal {
 
-// The parts of Apply, by stage. Each fills in what its verbs change in `next`, a copy of the state, and in
-// the facts: id, details, and the world's part where it is not the start's.
+// The parts of Apply, by stage. Each fills in what its verbs change in `next`, a copy of the state,
+// and in the facts: id, details, and the world's part where it is not the start's.
 
 /// What Apply works on.
 struct Application {

@@ -25,8 +25,13 @@ std::vector<StageFacts> MakeStageFacts(const Mppi& mppi, const Stages& stages) {
     StageFacts stage;
     for (int f = 0; f < kNumPlanningFingers; ++f) {
       const auto& finger = stages[i][f];
-      stage.push_back({static_cast<Finger>(f), finger.on, finger.kept, TriangleOf(mppi, i, f),
-                       finger.contact.p_OC, finger.contact.nhat_O, {}});
+      stage.push_back({static_cast<Finger>(f),
+                       finger.on,
+                       finger.kept,
+                       TriangleOf(mppi, i, f),
+                       finger.contact.p_OC,
+                       finger.contact.nhat_O,
+                       {}});
     }
     facts.push_back(std::move(stage));
   }

@@ -28,7 +28,8 @@ std::optional<FactsDifference> Compare(const Json& left, const Json& right,
   }
   if (left.is_array() && right.is_array()) {
     for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
-      if (auto found = Compare(left[i], right[i], path + '[' + std::to_string(i) + ']')) return found;
+      if (auto found = Compare(left[i], right[i], path + '[' + std::to_string(i) + ']'))
+        return found;
     }
     return FactsDifference{path, std::to_string(left.size()) + " items",
                            std::to_string(right.size()) + " items"};
@@ -39,15 +40,16 @@ std::optional<FactsDifference> Compare(const Json& left, const Json& right,
 }  // namespace
 
 Json FactsToJson(const StepFacts& facts, int number) {
-  return {{"number", number},
-          {"id", facts.id},
-          {"stage", facts.stage()},
-          {"command", CommandToJson(facts.command)},
-          {"t", Write(facts.t)},
-          {"bodies", Write(facts.bodies)},
-          {"fingers", Write(facts.fingers)},
-          {"contacts", Write(facts.contacts)},
-          {"details", std::visit([](const auto& details) { return Write(details); }, facts.details)}};
+  return {
+      {"number", number},
+      {"id", facts.id},
+      {"stage", facts.stage()},
+      {"command", CommandToJson(facts.command)},
+      {"t", Write(facts.t)},
+      {"bodies", Write(facts.bodies)},
+      {"fingers", Write(facts.fingers)},
+      {"contacts", Write(facts.contacts)},
+      {"details", std::visit([](const auto& details) { return Write(details); }, facts.details)}};
 }
 
 StepFacts FactsFromJson(const nlohmann::json& value, const std::string& where) {

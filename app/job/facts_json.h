@@ -8,15 +8,17 @@
 
 namespace pregrasp {
 
-/// A step as the object of a line of steps.jsonl (app/recording/README.md). A number that is not finite is
-/// our bug (PREGRASP_CHECK): facts are finite.
+/// A step as the object of a line of steps.jsonl (app/recording/README.md). A number that is not
+/// finite is our bug (PREGRASP_CHECK): facts are finite.
 nlohmann::ordered_json FactsToJson(const StepFacts& facts, int number);
 
 /// The reverse, to the last bit.
-/// @param where  file and line, for messages. @throws InputError for anything FactsToJson does not write.
+/// @param where  file and line, for messages. @throws InputError for anything FactsToJson does not
+/// write.
 StepFacts FactsFromJson(const nlohmann::json& value, const std::string& where);
 
-/// Where two steps first differ: the field's path ("details.rollouts[3].cost.total") and both values.
+/// Where two steps first differ: the field's path ("details.rollouts[3].cost.total") and both
+/// values.
 struct FactsDifference {
   std::string field, left, right;
 };

@@ -20,7 +20,9 @@ namespace pregrasp::fields {
 using Json = nlohmann::ordered_json;
 
 template <typename T>
-concept HasFields = requires(T& t) { T::VisitFields(t, [](const char*, auto&) {}); };
+concept HasFields = requires(T& t) {
+  T::VisitFields(t, [](const char*, auto&) {});
+};
 
 // Writing: one overload a type.
 

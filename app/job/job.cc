@@ -58,8 +58,8 @@ const EnvironmentDistance& Job::environment() {
 std::shared_ptr<const Planner> Job::GetPlanner(const WorldState& start,
                                                const PlannerConfig& config) {
   if (!planner_ || !SamePoses(planner_->start(), start) || !SameBase(planner_->config(), config)) {
-    planner_ = std::make_shared<const Planner>(world_, start, config, setup_.seed, pool(),
-                                               setup_.weights);
+    planner_ =
+        std::make_shared<const Planner>(world_, start, config, setup_.seed, pool(), setup_.weights);
   }
   return planner_;
 }

@@ -18,8 +18,8 @@ struct JobSetup {
   std::filesystem::path weights;  ///< the folder with score.safetensors and generator.safetensors
 };
 
-/// What all commands of one job share: the world, built at once; the planner and what it loads, built when a
-/// command first needs it. Its answers are functions of the setup alone.
+/// What all commands of one job share: the world, built at once; the planner and what it loads,
+/// built when a command first needs it. Its answers are functions of the setup alone.
 class Job {
  public:
   /// @param threads  0: one per hardware thread; cannot change a result.

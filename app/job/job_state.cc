@@ -6,7 +6,9 @@ Progress CalcProgress(const JobState& state) {
   using Reached = Progress::Reached;
   Progress progress;
   if (!state.certificate) return progress;
-  progress.reached = state.certificate->certified ? Reached::kCertified : Reached::kTrajectory;
+  progress.reached = Reached::kTrajectory;
+  if (!state.certificate->certified) return progress;
+  progress.reached = Reached::kCertified;
   for (int i = 0; i < state.num_grasps; ++i) {
     progress.feasible += state.grasps->grasps[i].feasible() ? 1 : 0;
   }

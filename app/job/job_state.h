@@ -14,8 +14,8 @@
 
 namespace pregrasp {
 
-/// Where a job is after a step: what its commands have come to on the way from the start to here, as shared
-/// values that never change. A member is null, or empty, until the command that makes it.
+/// Where a job is after a step: what its commands have come to on the way from the start to here,
+/// as shared values that never change. A member is null, or empty, until the command that makes it.
 struct JobState {
   PlannerConfig config;  ///< as the commands up to here have set it
   WorldState start;      ///< of every plan and simulation
@@ -35,7 +35,7 @@ struct JobState {
   int num_grasps = 0;
   std::map<int, std::shared_ptr<const LiftResult>> lifts;  ///< by number of the grasp, from 1
 
-  int chosen_grasp = 0;  ///< that `motion` ends in, from 1
+  int chosen_grasp = 0;                      ///< that `motion` ends in, from 1
   std::shared_ptr<const HandMotion> motion;  ///< refers to `planner`
   std::shared_ptr<const MotionState> motion_state;
 

@@ -8,8 +8,9 @@
 
 namespace pregrasp {
 
-/// The paths of one connected graph, best first, for any number of stages. Remembers those that it has found,
-/// so that asking again is free; what it answers depends on the graph alone. Not for several threads at once.
+/// The paths of one connected graph, best first, for any number of stages. Remembers those that it
+/// has found, so that asking again is free; what it answers depends on the graph alone. Not for
+/// several threads at once.
 class PathList {
  public:
   explicit PathList(std::shared_ptr<const ContactGraph> graph) : graph_(std::move(graph)) {}

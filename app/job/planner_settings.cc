@@ -148,6 +148,21 @@ void SetPlannerField(PlannerConfig& config, const std::string& name, const Field
                    "an unknown name");
 }
 
+void ApplySettings(const nlohmann::json& settings, PlannerConfig& config) {
+  for (const auto& [name, value] : settings.items()) {
+    FieldValue field;
+    if (value.is_boolean()) {
+      field = value.get<bool>();
+    } else if (value.is_number()) {
+      field = value.get<double>();
+    } else {
+      field = value.get<std::string>();
+    }
+    SetPlannerField(config, name, field);
+  }
+  config.Validate();
+}
+
 void ApplyPlannerSettings(PlannerConfig& config, std::vector<Setting>& settings) {
   const std::vector<std::string> roots = PlannerRoots();
   std::vector<Setting> left;
@@ -177,6 +192,13 @@ nlohmann::json PlannerConfigJson(const PlannerConfig& config) {
     const std::size_t dot = name.find('.');
     all[name.substr(0, dot)][name.substr(dot + 1)] = ToJson(field);
   });
+  return all;
+}
+
+nlohmann::json PlannerSettings(const PlannerConfig& config) {
+  nlohmann::json all;
+  VisitFields(config,
+              [&](const std::string& name, const auto& field) { all[name] = ToJson(field); });
   return all;
 }
 

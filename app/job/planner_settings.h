@@ -18,6 +18,10 @@ using FieldValue = std::variant<double, bool, std::string>;
 /// @throws InputError for an unknown name, with the nearest one, or a value that does not fit.
 void SetPlannerField(PlannerConfig& config, const std::string& name, const FieldValue& value);
 
+/// Sets the fields of an object {"mppi.samples": 64, ..}, as commands have it.
+/// @throws InputError as above, or for values that do not go together.
+void ApplySettings(const nlohmann::json& settings, PlannerConfig& config);
+
 /// Applies the settings that name a planner's field, and takes them out of the list.
 /// @throws InputError("--set") as above, but leaves names of other roots alone.
 void ApplyPlannerSettings(PlannerConfig& config, std::vector<Setting>& settings);
@@ -27,5 +31,7 @@ std::vector<std::string> PlannerRoots();
 
 /// Every field with its value, nested by stage.
 nlohmann::json PlannerConfigJson(const PlannerConfig& config);
+/// The same by full names, as ApplySettings takes them.
+nlohmann::json PlannerSettings(const PlannerConfig& config);
 
 }  // namespace pregrasp

@@ -96,7 +96,8 @@ class Runner {
     return timeline_.Do(*node, Verb::kCertify);
   }
 
-  // Tries the lifting grasps in turn; the first whose motion has no failed frame is it, else the first one.
+  // Tries the lifting grasps in turn; the first whose motion has no failed frame is it, else the
+  // first one.
   const Node& MoveHand(const Node& grasps, const std::string& name) {
     const auto state = timeline_.GetState(grasps);
     const std::vector<int> order = OrderGrasps(*state);
@@ -219,13 +220,13 @@ const Node& FinishMotion(Timeline& timeline, const Node& node, nlohmann::json op
 }
 
 const Node& ShowFrames(Timeline& timeline, const Node& finished) {
-  const Node* at = &finished;
+  const Node* last = &finished;
   const int count = static_cast<int>(timeline.GetState(finished)->motion_state->frames.size());
   for (int frame = 1; frame <= count; ++frame) {
     ThrowIfInterrupted();
-    at = &timeline.Do(*at, Verb::kFrame, {{"frame", frame}});
+    last = &timeline.Do(finished, Verb::kFrame, {{"frame", frame}});
   }
-  return *at;
+  return *last;
 }
 
 }  // namespace pregrasp

@@ -31,9 +31,10 @@ struct RunResult {
   std::vector<std::string> reasons;
 };
 
-/// The whole pipeline (paper, Figure 2) as commands to a timeline: the start's verdict, graph, then path after
-/// path in their order until one ends in a certified trajectory, a grasp whose lift is held and a hand motion
-/// without a failed frame. @throws Interrupted, with what was done in the timeline.
+/// The whole pipeline (paper, Figure 2) as commands to a timeline: the start's verdict, graph, then
+/// path after path in their order until one ends in a certified trajectory, a grasp whose lift is
+/// held and a hand motion without a failed frame. @throws Interrupted, with what was done in the
+/// timeline.
 RunResult RunPlanner(Timeline& timeline, const RunConfig& config,
                      const std::function<void(const RunProgress&)>& progress);
 
@@ -47,7 +48,8 @@ const Timeline::Node& PruneAll(Timeline& timeline, const Timeline::Node& scored,
 const Timeline::Node& CompleteGrasps(Timeline& timeline, const Timeline::Node& certified,
                                      nlohmann::json options);
 
-/// The grasps whose lift was simulated, the most promising first, by number. `node` is after CompleteGrasps.
+/// The grasps whose lift was simulated, the most promising first, by number. `node` is after
+/// CompleteGrasps.
 std::vector<int> OrderGrasps(const JobState& state);
 
 /// Solves the keyframes that are left and the frames between them, and smooths.
@@ -55,7 +57,7 @@ std::vector<int> OrderGrasps(const JobState& state);
 const Timeline::Node& FinishMotion(Timeline& timeline, const Timeline::Node& node,
                                    nlohmann::json options);
 
-/// Shows every frame of a finished motion as a step.
+/// Shows every frame of a finished motion as a step. @returns the last one.
 const Timeline::Node& ShowFrames(Timeline& timeline, const Timeline::Node& finished);
 
 }  // namespace pregrasp

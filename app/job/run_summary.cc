@@ -93,8 +93,8 @@ void FillChosen(const Timeline& timeline, const JobState& state, RunSummary& sum
     const GraspContact& contact = grasp.result.contacts[i];
     const Vector3 f_O = wrench.forces.row(static_cast<Eigen::Index>(i)).transpose();
     summary.grasps.fingers->push_back(contact.finger);
-    summary.wrench.forces->push_back({contact.finger, X_WO * contact.p_OC,
-                                      X_WO.linear() * contact.nhat_O, X_WO.linear() * f_O});
+    summary.wrench.forces->push_back(
+        {contact.finger, X_WO * contact.p_OC, X_WO.linear() * contact.nhat_O, X_WO.linear() * f_O});
   }
   const LiftResult& lift = *state.lifts.at(state.chosen_grasp);
   summary.lift.held = lift.held;
@@ -126,15 +126,14 @@ void FillCounts(const Timeline& timeline, const Node& node, RunSummary& summary)
       ++iterations;
       rollouts += static_cast<int>(iteration->rollouts.size());
     }
-    const bool counts = certified == nullptr || step->number <= certified->number ||
-                        summary.status != "ok";
+    const bool counts =
+        certified == nullptr || step->number <= certified->number || summary.status != "ok";
     if (Details<CertifyFacts>(*step) != nullptr && counts) {
       optimised.insert(FindOnTheWay<PathFacts>(*step)->id());
     }
   }
   if (const Node* pruned = FindOnTheWay<PruneFacts>(node)) {
-    summary.counts.kept =
-        static_cast<int>(std::get<PruneFacts>(pruned->facts.details).kept.size());
+    summary.counts.kept = static_cast<int>(std::get<PruneFacts>(pruned->facts.details).kept.size());
   }
   if (const Node* mesh = FindOnTheWay<MeshFacts>(node)) {
     summary.counts.nodes = std::get<MeshFacts>(mesh->facts.details).nodes;
@@ -150,8 +149,7 @@ void FillCounts(const Timeline& timeline, const Node& node, RunSummary& summary)
 
 void FillObjectMotion(const Timeline& timeline, const JobState& state, RunSummary& summary) {
   const std::vector<WorldState> rollout = GetRollout(state);
-  const Motion motion =
-      CalcObjectMotion(timeline.job().world(), rollout.front(), rollout.back());
+  const Motion motion = CalcObjectMotion(timeline.job().world(), rollout.front(), rollout.back());
   summary.object_motion.translation_m = motion.moved;
   summary.object_motion.rotation_deg = RadToDeg(motion.rotated);
   for (const WorldState& moment : rollout) {

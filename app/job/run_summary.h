@@ -8,8 +8,9 @@
 
 namespace pregrasp {
 
-/// What a job has come to: the fields of summary.json (design, section 2.4) in their order. A field that no
-/// step has filled in is none. Whoever drove the job, the same commands give the same summary.
+/// What a job has come to: the fields of summary.json (design, section 2.4) in their order. A field
+/// that no step has filled in is none. Whoever drove the job, the same commands give the same
+/// summary.
 struct RunSummary {
   std::string scene;
   std::uint64_t seed = 1;
@@ -221,20 +222,21 @@ struct RunSummary {
   }
 };
 
-/// What the job has come to at `node`: its trajectory, grasps and motion are those on the way there; paths,
-/// rollouts and iterations are counted over all that was done until then. Seconds, memory and the hash are
-/// left to who writes the files.
+/// What the job has come to at `node`: its trajectory, grasps and motion are those on the way
+/// there; paths, rollouts and iterations are counted over all that was done until then. Seconds,
+/// memory and the hash are left to who writes the files.
 RunSummary Summarize(const Timeline& timeline, const Timeline::Node& node);
 
-/// The status that `node` alone has reached: as the summary's, but for paths that were tried elsewhere; none
-/// where nothing was planned.
+/// The status that `node` alone has reached: as the summary's, but for paths that were tried
+/// elsewhere; none where nothing was planned.
 std::optional<std::string> StatusAt(const Timeline& timeline, const Timeline::Node& node);
 
-/// The node that has come furthest towards "ok"; of equals the one with more feasible grasps, then the latest.
+/// The node that has come furthest towards "ok"; of equals the one with more feasible grasps, then
+/// the latest.
 const Timeline::Node& FindFurthest(const Timeline& timeline);
 
-/// The trajectory that rollout.csv shows of a node: the certified one, else that of a simulation by hand, else
-/// the start alone. Every physics step, the start first.
+/// The trajectory that rollout.csv shows of a node: the certified one, else that of a simulation by
+/// hand, else the start alone. Every physics step, the start first.
 std::vector<WorldState> GetRollout(const JobState& state);
 
 }  // namespace pregrasp

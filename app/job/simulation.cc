@@ -31,8 +31,7 @@ double Simulation::CalcMaxPenetration() const {
 }
 
 void Simulation::ReplaceState(WorldState state) {
-  past_.back() =
-      std::make_shared<const Moment>(Moment{std::move(state), past_.back()->trace});
+  past_.back() = std::make_shared<const Moment>(Moment{std::move(state), past_.back()->trace});
 }
 
 void Simulation::StepOnce(WorldState state) {

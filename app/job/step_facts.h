@@ -14,11 +14,11 @@
 
 namespace pregrasp {
 
-// Everything that a picture, a log record, a table, a sentence or a Lua value of a step shows, as plain
-// data. Each struct names its fields once, in VisitFields(self, visit), which calls visit(name, member) for
-// each: the JSON of steps.jsonl, its reader and the comparison of two runs follow from that
-// (facts_json.h). SI units and radians, but where a name says otherwise. Frames as everywhere: W world, O
-// object, B body, H palm, C contact.
+// Everything that a picture, a log record, a table, a sentence or a Lua value of a step shows, as
+// plain data. Each struct names its fields once, in VisitFields(self, visit), which calls
+// visit(name, member) for each: the JSON of steps.jsonl, its reader and the comparison of two runs
+// follow from that (facts_json.h). SI units and radians, but where a name says otherwise. Frames as
+// everywhere: W world, O object, B body, H palm, C contact.
 
 /// A movable body.
 struct BodyFacts {
@@ -548,17 +548,16 @@ struct SimulationFacts {
 };
 
 /// One alternative for each kind of step; which one follows from the command's verb.
-using StepDetails =
-    std::variant<OpenFacts, SettleFacts, VerdictFacts, MeshFacts, ScoreFacts, PruneFacts, PathFacts,
-                 IterationFacts, CertifyFacts, GraspFacts, LiftFacts, FrameFacts, MotionFacts,
-                 SimulationFacts>;
+using StepDetails = std::variant<OpenFacts, SettleFacts, VerdictFacts, MeshFacts, ScoreFacts,
+                                 PruneFacts, PathFacts, IterationFacts, CertifyFacts, GraspFacts,
+                                 LiftFacts, FrameFacts, MotionFacts, SimulationFacts>;
 
 /// One step: the unit of steps.jsonl, of run.rawlog and of the pictures, all under one id.
-struct StepFacts {  // NOLINT(bugprone-exception-escape): moving JSON does not throw
-  std::string id;   ///< unique in a job
-  Command command;  ///< what made it, and from which step
-  double t = 0.0;   ///< simulated time [s]
-  std::vector<BodyFacts> bodies;    ///< the movable ones, the object first
+struct StepFacts {                // NOLINT(bugprone-exception-escape): moving JSON does not throw
+  std::string id;                 ///< unique in a job
+  Command command;                ///< what made it, and from which step
+  double t = 0.0;                 ///< simulated time [s]
+  std::vector<BodyFacts> bodies;  ///< the movable ones, the object first
   std::vector<FingerFacts> fingers;  ///< all five
   std::vector<ContactFacts> contacts;
   StepDetails details;
@@ -577,7 +576,8 @@ class FactsSource {
   virtual ~FactsSource() = default;
   virtual const StepFacts& Get(const std::string& id) const = 0;
 
-  /// The nearest step with details of type T among `step` and the steps that led to it; null if none.
+  /// The nearest step with details of type T among `step` and the steps that led to it; null if
+  /// none.
   template <typename T>
   const T* FindBefore(const StepFacts& step) const {
     const StepFacts* at = &step;

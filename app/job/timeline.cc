@@ -30,8 +30,8 @@ void DropIdleSettings(nlohmann::json& options, const PlannerConfig& config) {
   for (const auto& [name, value] : settings->items()) {
     const std::size_t dot = name.find('.');
     const std::string root = name.substr(0, dot);
-    const bool known = dot != std::string::npos && now.contains(root) &&
-                       now[root].contains(name.substr(dot + 1));
+    const bool known =
+        dot != std::string::npos && now.contains(root) && now[root].contains(name.substr(dot + 1));
     if (!known || now[root][name.substr(dot + 1)] != value) changed[name] = value;
   }
   if (changed.empty()) {
@@ -92,6 +92,7 @@ const Timeline::Node& Timeline::Add(const Node* parent, Applied applied) {
 
 const Timeline::Node& Timeline::Do(const Node& from, Verb verb, nlohmann::json options) {
   const std::shared_ptr<const JobState> state = GetState(from);
+  if (options.is_null()) options = nlohmann::json::object();
   DropIdleSettings(options, state->config);
   const Command command{verb, from.id(), std::move(options)};
   if (const Node* known = FindChild(from, command)) return *known;
@@ -124,8 +125,7 @@ std::shared_ptr<const JobState> Timeline::GetState(const Node& node) const {
   const auto kept = states_.find(node.number);
   if (kept != states_.end()) return kept->second;
   PREGRASP_CHECK(node.parent != nullptr);
-  std::shared_ptr<const JobState> state =
-      TimedApply(GetState(*node.parent), node.command).state;
+  std::shared_ptr<const JobState> state = TimedApply(GetState(*node.parent), node.command).state;
   states_[node.number] = state;
   return state;
 }

@@ -10,12 +10,13 @@
 
 namespace pregrasp {
 
-/// Everything that was done in a job, as a tree: a node is a step, its parent the step it acted on. Going back
-/// is to act on an earlier node, a fork is a second child. Nodes never change and never go away.
+/// Everything that was done in a job, as a tree: a node is a step, its parent the step it acted on.
+/// Going back is to act on an earlier node, a fork is a second child. Nodes never change and never
+/// go away.
 ///
-/// Ids are unique and do not depend on what else is in the tree's other branches but for the order in which
-/// branches began: the same command from the same node is the same node, any other whose id is taken gets the
-/// next free ~n, which what follows it carries on.
+/// Ids are unique and do not depend on what else is in the tree's other branches but for the order
+/// in which branches began: the same command from the same node is the same node, any other whose
+/// id is taken gets the next free ~n, which what follows it carries on.
 class Timeline : public FactsSource {
  public:
   struct Node {
@@ -37,10 +38,10 @@ class Timeline : public FactsSource {
   /// In the order of doing.
   const std::vector<std::unique_ptr<Node>>& nodes() const { return nodes_; }
 
-  /// Does `verb` to `from`, or finds the node where that was done. Settings that change nothing are left out.
+  /// Does `verb` to `from`, or finds the node where that was done. Settings that change nothing are
+  /// left out.
   /// @throws as Apply. Interrupted physics of a simulation by hand is a node first.
-  const Node& Do(const Node& from, Verb verb,
-                 nlohmann::json options = nlohmann::json::object());
+  const Node& Do(const Node& from, Verb verb, nlohmann::json options = nlohmann::json::object());
 
   /// What Do would come to, without doing it; Commit then does it.
   Applied Try(const Node& from, Verb verb, const nlohmann::json& options) const;
@@ -50,7 +51,8 @@ class Timeline : public FactsSource {
   const Node& Find(const std::string& id) const;
   const StepFacts& Get(const std::string& id) const override { return Find(id).facts; }
 
-  /// The job's state after a node: kept for the latest, else computed again from the nearest one that is.
+  /// The job's state after a node: kept for the latest, else computed again from the nearest one
+  /// that is.
   std::shared_ptr<const JobState> GetState(const Node& node) const;
 
   /// Called with each new node.

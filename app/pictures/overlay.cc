@@ -83,8 +83,8 @@ class Maker {
     const double low = best.front()->cost.total, high = best.back()->cost.total;
     for (const RolloutFacts* rollout : best) {
       const double s = high > low ? (high - rollout->cost.total) / (high - low) : 1.0;
-      overlay.ghosts.push_back({MakeTransform(rollout->q_WO_end, rollout->p_WO_end),
-                                WithAlpha(ScoreColor(s), 0.45F)});
+      overlay.ghosts.push_back(
+          {MakeTransform(rollout->q_WO_end, rollout->p_WO_end), WithAlpha(ScoreColor(s), 0.45F)});
     }
     overlay.legend = ScoreLegend("cost", high, low);
     return overlay;
@@ -121,7 +121,8 @@ class Maker {
     std::vector<double> best(count, -1.0);
     const double highest = *std::max_element(scores.s_c.begin(), scores.s_c.end());
     for (const int node : shown) {
-      for (const int t : {node / count, node % count}) best[t] = std::max(best[t], scores.s_c[node]);
+      for (const int t : {node / count, node % count})
+        best[t] = std::max(best[t], scores.s_c[node]);
     }
     for (int t = 0; t < count; ++t) {
       overlay.face_colors[t] = best[t] >= 0.0 && highest > 0.0 ? ScoreColor(best[t] / highest)
@@ -141,8 +142,8 @@ class Maker {
     AppendHand(overlay.focus_W, *overlay.hand);
   }
 
-  // What every picture of a motion shows, so that they have one camera: the hand at the keyframes that
-  // were solved by then, and headroom for the card of text.
+  // What every picture of a motion shows, so that they have one camera: the hand at the keyframes
+  // that were solved by then, and headroom for the card of text.
   MatrixX3 FocusOnMotion() const {
     constexpr double kHeadroom = 0.06;  // [m]
     MatrixX3 focus_W(0, 3);

@@ -35,9 +35,9 @@ PictureOverlay MakeOverlay(const StepFacts& step, const FactsSource& steps);
 /// Where what led to `step` began: the scene's start, settled or not.
 const StepFacts& FindStart(const StepFacts& step, const FactsSource& steps);
 
-/// Whether a run with PictureMode::kKey draws the step unasked: the start, scores, the pruned graph, paths,
-/// every fifth iteration and the last, certificates, of each path the first grasp that is feasible and the
-/// first that is not, lifts, keyframes.
+/// Whether a run with PictureMode::kKey draws the step unasked: the start, scores, the pruned
+/// graph, paths, every fifth iteration and the last, certificates, of each path the first grasp
+/// that is feasible and the first that is not, lifts, keyframes.
 bool IsKeyStep(const StepFacts& step, const FactsSource& steps);
 
 }  // namespace pregrasp

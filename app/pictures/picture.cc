@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/geometry/signed_distance.h"
 #include "app/geometry/tessellate.h"
 #include "app/pictures/camera.h"
 #include "app/pictures/finger_stub.h"
 #include "app/pictures/forces.h"
 #include "app/pictures/overlay.h"
-#include "app/geometry/signed_distance.h"
 #include "render/hand_bodies.h"
 #include "render/palette.h"
 
@@ -226,8 +226,8 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
   if (config.trace) AddContactArrows(picture, step.contacts, impl_->metres_per_newton);
   if (config.forces && overlay.forces) {
     const MassProperties& mass = *scene.object().mass_properties;
-    impl_->AddArrow(picture, step.object().X_WB() * mass.p_BoBcm, false,
-                    mass.mass * scene.gravity, NeutralColor(), "weight");
+    impl_->AddArrow(picture, step.object().X_WB() * mass.p_BoBcm, false, mass.mass * scene.gravity,
+                    NeutralColor(), "weight");
   }
   picture.axes = config.axes;
   picture.caption = {text.title, text.lines, text.footer, -1.0};

@@ -40,8 +40,8 @@ struct PictureText {
   std::string footer;
 };
 
-/// Turns steps of one scene into pictures' contents: a function of the step's facts, of the steps before it
-/// and of the scene. Holds the meshes, which pictures share.
+/// Turns steps of one scene into pictures' contents: a function of the step's facts, of the steps
+/// before it and of the scene. Holds the meshes, which pictures share.
 class PictureMaker {
  public:
   /// @param scene  loaded.

@@ -64,9 +64,10 @@ Lines Describe(const Scene& /*scene*/, const PruneFacts& facts) {
                          facts.top_percent),
              fmt::format("threshold\t{:.3f}", facts.threshold_n)};
   } else {
-    lines = {"States that share a triangle are connected: one finger stays while the other "
-             "changes its place.",
-             fmt::format("edges\t{}", facts.num_edges)};
+    lines = {
+        "States that share a triangle are connected: one finger stays while the other "
+        "changes its place.",
+        fmt::format("edges\t{}", facts.num_edges)};
   }
   if (facts.nodes_done > 0) {
     lines.push_back(fmt::format("so far\t{} nodes of this step", facts.nodes_done));
@@ -173,17 +174,17 @@ Lines Describe(const Scene& /*scene*/, const FrameFacts& facts) {
   if (!facts.failed && facts.loosened != "none") {
     verdict = fmt::format("Only with a demand loosened: {}.", facts.loosened);
   }
-  return {fmt::format(
-              "{}: {}. {}", facts.phase,
-              touching.empty() ? "no finger touches" : Join(touching, ", ") + " on the object",
-              verdict),
-          fmt::format("clearance\t{:.2f} mm", facts.clearance_mm),
-          fmt::format("tip error\t{:.2f} mm", facts.tip_error_mm)};
+  return {
+      fmt::format("{}: {}. {}", facts.phase,
+                  touching.empty() ? "no finger touches" : Join(touching, ", ") + " on the object",
+                  verdict),
+      fmt::format("clearance\t{:.2f} mm", facts.clearance_mm),
+      fmt::format("tip error\t{:.2f} mm", facts.tip_error_mm)};
 }
 
 Lines Describe(const Scene& /*scene*/, const MotionFacts& facts) {
-  return {fmt::format("The hand's motion in {} frames, keyframes solved in {} order.",
-                      facts.frames, facts.order),
+  return {fmt::format("The hand's motion in {} frames, keyframes solved in {} order.", facts.frames,
+                      facts.order),
           fmt::format("failed frames\t{}", facts.failed),
           fmt::format("loosened frames\t{}", facts.loosened),
           fmt::format("least clearance\t{:.2f} mm", facts.min_clearance_mm),

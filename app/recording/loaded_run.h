@@ -24,8 +24,8 @@ struct LoadedRun : FactsSource {  // NOLINT(bugprone-exception-escape): moving J
   const StepFacts& Get(const std::string& id) const override;
 };
 
-/// @throws InputError if `directory` is not a finished run or a file of it cannot be read. Does not compare
-/// hashes: see VerifyManifest.
+/// @throws InputError if `directory` is not a finished run or a file of it cannot be read. Does not
+/// compare hashes: see VerifyManifest.
 LoadedRun LoadRun(const std::filesystem::path& directory);
 
 }  // namespace pregrasp

@@ -5,9 +5,9 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/json_text.h"
 #include "app/core/sha256.h"
 #include "app/recording/checked_file.h"
-#include "app/core/json_text.h"
 
 namespace pregrasp {
 namespace {

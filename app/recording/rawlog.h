@@ -33,9 +33,9 @@ class RawlogWriter {
 };
 
 /// A log read back through MRPT.
-struct Rawlog {                   // NOLINT(bugprone-exception-escape): moving JSON does not throw
-  nlohmann::json header;          ///< the global comment
-  std::vector<StepFacts> steps;   ///< from each step's comment
+struct Rawlog {                  // NOLINT(bugprone-exception-escape): moving JSON does not throw
+  nlohmann::json header;         ///< the global comment
+  std::vector<StepFacts> steps;  ///< from each step's comment
   std::vector<std::string> pictures;  ///< of each step, as MRPT names the file, relative to the
                                       ///< folder of images
 };

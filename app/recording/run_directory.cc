@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "app/core/check.h"
+#include "app/core/json_text.h"
 #include "app/core/sha256.h"
 #include "app/job/facts_json.h"
 #include "app/recording/build_info.h"
 #include "app/recording/checked_file.h"
-#include "app/core/json_text.h"
 #include "app/recording/manifest.h"
 #include "app/recording/partial_directory.h"
 #include "app/recording/rawlog.h"
@@ -42,6 +42,7 @@ Json ManifestFields(const RunInfo& info, const nlohmann::json& configuration) {
           {"command", info.command},
           {"scene_file", info.scene_file},
           {"seed", info.seed},
+          {"settings_at_start", info.settings_at_start},
           {"configuration", configuration}};
 }
 

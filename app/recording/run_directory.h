@@ -14,7 +14,7 @@
 namespace pregrasp {
 
 /// What a run is a function of besides its scene, and what else its files say about it.
-struct RunInfo {
+struct RunInfo {  // NOLINT(bugprone-exception-escape): moving JSON does not throw
   std::uint64_t seed = 1;
   double dt = StepConfig{}.dt;  ///< the step of the certified simulation [s]
   /// Versions of libraries this folder cannot ask for itself ("simbody", "fcl", "assimp", "mesa");
@@ -22,6 +22,8 @@ struct RunInfo {
   std::map<std::string, std::string> libraries;
   std::string command;     ///< the command line that makes the run again; may be empty
   std::string scene_file;  ///< as the user gave it; may be empty
+  /// The planner's fields before any command, by full name: what a replay begins with.
+  nlohmann::json settings_at_start = nlohmann::json::object();
 };
 
 /// The name under frames/ of the picture of step `number` (from 1): 1 and "scene.start" give
@@ -52,8 +54,8 @@ class RunDirectory {
   /// Where the picture of a step belongs: partial()/frames/NNNN_ID.png. The folder is made.
   std::filesystem::path PictureFile(int number, const std::string& step_id) const;
 
-  /// Appends the step to run.rawlog (a CActionCollection and a CSensoryFrame), to steps.jsonl, and its command
-  /// to journal.jsonl. @returns its number, from 1.
+  /// Appends the step to run.rawlog (a CActionCollection and a CSensoryFrame), to steps.jsonl, and
+  /// its command to journal.jsonl. @returns its number, from 1.
   int AddStep(const StepFacts& step);
 
   /// Appends one row to rollout.csv. `state` is one of a world of this scene.

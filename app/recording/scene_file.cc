@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "app/core/error.h"
-#include "app/recording/checked_file.h"
 #include "app/core/json_reader.h"
 #include "app/core/json_text.h"
 #include "app/core/json_values.h"
+#include "app/recording/checked_file.h"
 #include "app/recording/obj_file.h"
 
 namespace pregrasp {

@@ -59,8 +59,9 @@ std::span<const OverlayFlag> OverlayFlags() { return kOverlays; }
 void SetOverlays(PictureConfig& config, const std::vector<std::string>& names) {
   for (const OverlayFlag& overlay : kOverlays) config.*overlay.flag = false;
   for (const std::string& name : names) {
-    const auto found = std::find_if(kOverlays.begin(), kOverlays.end(),
-                                    [&](const OverlayFlag& overlay) { return name == overlay.name; });
+    const auto found =
+        std::find_if(kOverlays.begin(), kOverlays.end(),
+                     [&](const OverlayFlag& overlay) { return name == overlay.name; });
     if (found == kOverlays.end()) {
       std::string all;
       for (const OverlayFlag& overlay : kOverlays) {
@@ -141,10 +142,9 @@ PictureText PictureDrawer::Caption(const StepFacts& step, const FactsSource& ste
 void PictureDrawer::Draw(const StepFacts& step, const FactsSource& steps, const Shot& shot,
                          const std::filesystem::path& file) {
   if (!maker_) maker_ = std::make_unique<PictureMaker>(scene_);
-  const RenderScene picture =
-      maker_->Compose(step, steps, Caption(step, steps, shot), shot.config);
-  WritePng(SharedRenderer().Render(
-               picture, {shot.config.width, shot.config.height, shot.config.quality}),
+  const RenderScene picture = maker_->Compose(step, steps, Caption(step, steps, shot), shot.config);
+  WritePng(SharedRenderer().Render(picture,
+                                   {shot.config.width, shot.config.height, shot.config.quality}),
            file);
 }
 

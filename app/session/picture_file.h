@@ -47,8 +47,8 @@ struct PictureLabels {
   std::string command;     ///< that makes the pictures again; may be empty
 };
 
-/// Draws steps to PNG files. The renderer is made when the first picture is: a run without pictures never
-/// loads OpenGL.
+/// Draws steps to PNG files. The renderer is made when the first picture is: a run without pictures
+/// never loads OpenGL.
 class PictureDrawer {
  public:
   PictureDrawer(Scene scene, PictureLabels labels);

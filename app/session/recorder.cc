@@ -39,8 +39,8 @@ Recorder::Recorder(const std::filesystem::path& directory, const Timeline& timel
 void Recorder::Draw(const Timeline::Node& node, const Shot& shot) {
   const auto begin = std::chrono::steady_clock::now();
   drawer_.Draw(node.facts, timeline_, shot, run_.PictureFile(node.number, node.id()));
-  nlohmann::ordered_json line = {
-      {"picture", "frames/" + PictureName(node.number, node.id())}, {"step", node.id()}};
+  nlohmann::ordered_json line = {{"picture", "frames/" + PictureName(node.number, node.id())},
+                                 {"step", node.id()}};
   line.update(ShotToJson(shot));
   drawn_[node.number] = FormatJson(line) + '\n';
   picture_seconds_ +=
@@ -50,9 +50,8 @@ void Recorder::Draw(const Timeline::Node& node, const Shot& shot) {
 void Recorder::DrawPending() {
   if (pending_ == nullptr) return;
   const Timeline::Node& node = *std::exchange(pending_, nullptr);
-  const bool wanted =
-      pictures_ == PictureMode::kAll ||
-      (pictures_ == PictureMode::kKey && IsKeyStep(node.facts, timeline_));
+  const bool wanted = pictures_ == PictureMode::kAll ||
+                      (pictures_ == PictureMode::kKey && IsKeyStep(node.facts, timeline_));
   if (wanted) Draw(node, Shot{});
 }
 

@@ -10,15 +10,16 @@
 
 namespace pregrasp {
 
-/// Writes a timeline to a run directory, node by node, with pictures of the steps that its mode asks for and
-/// of those that somebody does.
+/// Writes a timeline to a run directory, node by node, with pictures of the steps that its mode
+/// asks for and of those that somebody does.
 class Recorder {
  public:
   /// @param drawer  outlives this, as does the timeline.
   Recorder(const std::filesystem::path& directory, const Timeline& timeline, PictureMode pictures,
            PictureDrawer& drawer, RunInfo info);
 
-  /// Writes the next node. Its own picture waits until the next one comes: another may be asked for.
+  /// Writes the next node. Its own picture waits until the next one comes: another may be asked
+  /// for.
   void Add(const Timeline::Node& node);
   /// A picture of a node that was added; of several of one node the last stays.
   void Shoot(const Timeline::Node& node, const Shot& shot);

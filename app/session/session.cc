@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "app/core/error.h"
+#include "app/job/planner_settings.h"
 
 namespace pregrasp {
 namespace {
@@ -73,6 +74,7 @@ std::unique_ptr<Recorder> Session::OpenRecorder(const std::filesystem::path& dir
   info.dt = world().config().dt;
   info.command = config_.command;
   info.scene_file = SceneLabel(scene());
+  info.settings_at_start = PlannerSettings(config_.planner);
   auto recorder = std::make_unique<Recorder>(
       directory, *timeline_, config_.pictures.value_or(pictures), *drawer_, std::move(info));
   for (const auto& node : timeline_->nodes()) {

@@ -22,8 +22,8 @@ struct SessionConfig {
   std::filesystem::path weights;  ///< the folder of the networks' weights
 };
 
-/// One scene under work: its job and timeline, where its simulations and plans begin, and its run directory.
-/// Computes nothing itself: whatever is done is a command to the timeline.
+/// One scene under work: its job and timeline, where its simulations and plans begin, and its run
+/// directory. Computes nothing itself: whatever is done is a command to the timeline.
 class Session {
  public:
   using Node = Timeline::Node;
@@ -54,8 +54,9 @@ class Session {
   /// @throws InputError when one is open already, or as RunDirectory does.
   void Record(const std::filesystem::path& directory, PictureMode pictures);
 
-  /// Writes a run directory with everything up to now: at `directory`, or the one that is recorded to, which
-  /// ends there. @param node  that the summary is of; null for the furthest one. @returns where it is.
+  /// Writes a run directory with everything up to now: at `directory`, or the one that is recorded
+  /// to, which ends there. @param node  that the summary is of; null for the furthest one. @returns
+  /// where it is.
   std::filesystem::path Save(const std::optional<std::filesystem::path>& directory,
                              const Node* node = nullptr);
 

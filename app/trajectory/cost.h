@@ -31,8 +31,8 @@ struct PlanCost {
   double total = 0.0;
 };
 
-/// A penalty's name, what a plan has of it, and its weight: the one table of them, which records, pictures
-/// and scripts read.
+/// A penalty's name, what a plan has of it, and its weight: the one table of them, which records,
+/// pictures and scripts read.
 struct CostTerm {
   const char* name;
   double PlanCost::*value;

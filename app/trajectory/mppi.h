@@ -77,7 +77,8 @@ class Mppi {
   PlanOutcome Simulate(const std::vector<double>& action) const;
 
   RelativePlan Decode(const std::vector<double>& action) const { return space_.Decode(action); }
-  /// Standard deviation of the noise in `iteration`, from 0: falls geometrically from the first to the last.
+  /// Standard deviation of the noise in `iteration`, from 0: falls geometrically from the first to
+  /// the last.
   double CalcSigma(int iteration) const;
 
   const MppiConfig& config() const { return config_; }

@@ -135,6 +135,17 @@ function pregrasp.union(parts) end
 ---@field departures string[] from the project's physical rules, a sentence each; empty is within them
 local Session = {}
 
+---Whether the object can be grasped where it stands: by proof, else by search.
+---@return Verdict
+function Session:verdict() end
+
+---@class Verdict
+---@field verdict string "certified", "searched" or "graspable"
+---@field mu number the fingertips' friction
+---@field mu_star? number the least friction at which the proof fails, of those tried; nil for none
+---@field sentence string
+---@field step_id string
+
 ---Lets the scene alone; from then on it starts where that ended.
 ---@param options? SettleOptions
 ---@return SettleResult
@@ -561,6 +572,8 @@ function Trajectory:shot(options) end
 ---@field num_feasible integer
 ---@field r_suc number share that is feasible, with refinement
 ---@field r_suc_raw number and without
+---@field num_lifting integer of the feasible ones, those whose lift is held
+---@field r_lift number share of all that are feasible and lift
 local Grasps = {}
 
 ---For a loop: for i, grasp in grasps:all() do .. end.
@@ -577,6 +590,7 @@ function Grasps:best() end
 ---@field raw_reason string the same without refinement
 ---@field text string a sentence: which fingers, and what stands in the way
 ---@field sample integer
+---@field source string "generator" or "search"
 ---@field fingers FingerName[]
 ---@field contacts GraspContact[]
 ---@field moved_mm number the farthest a contact was moved by refinement
@@ -611,10 +625,12 @@ function Grasp:shot(options) end
 ---@class Lift
 ---@field held boolean the object follows within 10 mm and 15 degrees
 ---@field height number how far it came [m]
----@field shift number from where it should be [m]
+---@field reasons string[] why it is not held, a sentence each
+---@field shift_mm number from where it should be
 ---@field turn_deg number
 ---@field slip_mm number the farthest that a fingertip slid
 ---@field direction_W Vector3 nearest to up in which it can leave
+---@field step_id string
 
 ---@class Motion
 ---@field finished boolean

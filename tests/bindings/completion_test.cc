@@ -106,7 +106,7 @@ TEST_F(PromptTest, ShowsRecordsAndObjectsAsRows) {
   EXPECT_NE(session.find("\n  bodies      {\"ruler\", \"table\"}\n  object      Body{..}\n"),
             std::string::npos)
       << session;
-  EXPECT_NE(session.find("\n  :settle :simulate "), std::string::npos) << session;
+  EXPECT_NE(session.find("\n  :settle :verdict :simulate "), std::string::npos) << session;
 }
 
 TEST_F(PromptTest, ShowsAListOfRecordsAsATable) {

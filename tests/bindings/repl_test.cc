@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-#include "app/recording/run_directory.h"
+#include "app/recording/loaded_run.h"
 #include "tests/bindings/lua_text.h"
 #include "tests/bindings/run_program.h"
 #include "tests/bindings/terminal.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "app/recording/run_directory.h"
+#include "app/recording/loaded_run.h"
 #include "tests/bindings/lua_text.h"
 #include "tests/bindings/run_program.h"
 
@@ -28,9 +28,9 @@ TEST(ScriptTest, TheExampleDragsTheRulerOverTheEdgeFromAnyFolder) {
   const LoadedRun run = LoadRun(folder.path() / "out/push");
   EXPECT_EQ(run.steps.front().id, "scene.start");
   EXPECT_EQ(run.steps.back().id, "sim.8");
-  EXPECT_EQ(run.summary["status"], nullptr);
-  EXPECT_EQ(run.summary["within_rules"], true);
-  const RigidTransform& X_WO = run.steps.back().bodies.at(0).X_WB;
+  EXPECT_FALSE(run.summary.status.has_value());
+  EXPECT_EQ(run.summary.within_rules, true);
+  const RigidTransform X_WO = run.steps.back().object().X_WB();
   EXPECT_GT(X_WO.translation().x() + 0.15, 0.05);     // over the edge x = 0
   EXPECT_NEAR(X_WO.translation().z(), 0.0015, 1e-5);  // and still flat on the table
   EXPECT_LT(RotationAngle(X_WO.linear(), Matrix3::Identity()), 0.01);
@@ -118,7 +118,7 @@ TEST(ScriptTest, CtrlCLeavesAValidShorterRun) {
   EXPECT_EQ(result.code, 130);
   EXPECT_EQ(result.err, "interrupted\n");
   const LoadedRun run = LoadRun(folder.path() / "out/run");
-  EXPECT_EQ(run.summary["status"], "interrupted");
+  EXPECT_EQ(run.summary.status, "interrupted");
   EXPECT_GE(run.steps.size(), 3U);
 }
 

@@ -6,10 +6,13 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
+#include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
-#include "app/recording/run_directory.h"
 #include "tests/bindings/run_program.h"
 #include "tests/networks/random_network.h"
 
@@ -57,7 +60,7 @@ TEST_F(RunCommandTest, WithoutSuccessTheRunIsCompleteAndSaysWhy) {
   EXPECT_NE(result.out.find("path 1, cost "), std::string::npos) << result.out;
   EXPECT_FALSE(VerifyManifest(folder_ / "out" / "ruler").has_value());
   const LoadedRun run = LoadRun(folder_ / "out" / "ruler");
-  EXPECT_EQ(run.summary["status"], "no_feasible_grasp");
+  EXPECT_EQ(run.summary.status, "no_feasible_grasp");
   EXPECT_EQ(run.manifest["configuration"]["mppi"]["iterations"], 2);
 }
 
@@ -65,10 +68,10 @@ TEST_F(RunCommandTest, ASeedGivesTheSameBytesWithAnyNumberOfThreadsAndAFinishedR
   const fs::path out = folder_ / "out" / "ruler";
   RunProgram(Quick({"--threads", "1"}), folder_);
   const std::string steps = ReadText(out / "steps.jsonl");
-  const std::string hash = LoadRun(out).summary["hash"];
+  const std::string hash = *LoadRun(out).summary.hash;
   RunProgram(Quick({"--threads", "2"}), folder_);
   EXPECT_EQ(ReadText(out / "steps.jsonl"), steps);
-  EXPECT_EQ(LoadRun(out).summary["hash"], hash);
+  EXPECT_EQ(*LoadRun(out).summary.hash, hash);
   RunProgram(Quick({"--seed", "2"}), folder_);
   EXPECT_NE(ReadText(out / "steps.jsonl"), steps);
 }
@@ -105,8 +108,72 @@ TEST_F(RunCommandTest, CtrlCLeavesAValidShorterRun) {
   }
   kill(child, SIGINT);
   EXPECT_EQ(AwaitProgram(child, captured).code, 130);
-  EXPECT_EQ(LoadRun(folder_ / "run").summary["status"], "interrupted");
+  EXPECT_EQ(LoadRun(folder_ / "run").summary.status, "interrupted");
   EXPECT_FALSE(VerifyManifest(folder_ / "run").has_value());
+}
+
+// What pregrasp run does, as a script would; two paths at most.
+constexpr char kSameAsRun[] = R"lua(
+  local pg = require "pregrasp"
+  local settings = {}
+  for key, value in (...):gmatch("([%w_.]+)=([%w.]+)") do settings[key] = tonumber(value) end
+  local s = pg.open("SCENE", { set = settings })
+  s:record { dir = "out/script", pictures = "none" }
+  s:verdict()
+  local g = s:graph {}
+  g:score()
+  g:prune {}
+  local paths, done = g:paths {}, false
+  for _ = 1, 2 do
+    local o = not done and paths:next():optimize {}
+    if o then
+      while o:step() do end
+      local t = o:certify {}
+      local best = t.certified and t:grasps {}:best()
+      if best and best.lift.held then
+        for frame in best:motion {}:frames() do done = frame.number > 0 end
+      end
+    end
+  end
+  s:save())lua";
+
+// Two run directories that say the same, but for seconds, memory, and what hashes them.
+void ExpectSameRun(const fs::path& a, const fs::path& b) {
+  for (const char* file : {"steps.jsonl", "journal.jsonl", "rollout.csv", "motion.csv", "lift.csv",
+                           "scene.json", "run.rawlog"}) {
+    ASSERT_EQ(fs::exists(a / file), fs::exists(b / file)) << file;
+    if (fs::exists(a / file)) EXPECT_EQ(ReadText(a / file), ReadText(b / file)) << file;
+  }
+  nlohmann::json x = nlohmann::json::parse(ReadText(a / "summary.json"));
+  nlohmann::json y = nlohmann::json::parse(ReadText(b / "summary.json"));
+  for (nlohmann::json* summary : {&x, &y}) {
+    EXPECT_FALSE((*summary)["status"].is_null());
+    summary->erase("seconds");
+    summary->erase("peak_rss_mb");
+  }
+  EXPECT_EQ(x, y);
+}
+
+std::string ScriptText() {
+  std::string text = kSameAsRun;
+  return text.replace(text.find("SCENE"), 5, kScene);
+}
+
+TEST_F(RunCommandTest, AScriptOfTheSameCommandsLeavesTheSameRunWhereNothingSucceeds) {
+  std::ofstream(folder_ / "same.lua") << ScriptText();
+  const std::string settings =
+      "mppi.iterations=2 grasps.samples=2 grasps.max_refinements=1 grasps.starts=2";
+  std::vector<std::string> arguments = Arguments({"--paths", "2"});
+  std::istringstream words(settings);
+  for (std::string word; words >> word;) {
+    arguments.insert(arguments.end(), {"--set", word});
+  }
+  EXPECT_EQ(RunProgram(arguments, folder_).code, 3);
+  const ProgramResult script = RunProgram(
+      {"script", (folder_ / "same.lua").string(), settings, "--weights", Weights().string()},
+      folder_);
+  EXPECT_EQ(script.code, 0) << script.err;
+  ExpectSameRun(folder_ / "out" / "ruler", folder_ / "out" / "script");
 }
 
 // The main job with the weights that ship.
@@ -117,11 +184,22 @@ TEST(MainJobTest, TheRulerIsGrasped) {
   const ProgramResult result = RunProgram({"run", kScene, "--pictures", "none"}, folder);
   EXPECT_EQ(result.code, 0) << result.out << result.err;
   const LoadedRun run = LoadRun(folder / "out" / "ruler");
-  EXPECT_EQ(run.summary["status"], "ok");
-  EXPECT_GE(run.summary["r_suc"].get<double>(), 0.5);
-  EXPECT_EQ(run.summary["start_grasps"]["feasible"], 0);
-  EXPECT_EQ(run.summary["motion"]["failed"], 0);
+  EXPECT_EQ(run.summary.status, "ok");
+  EXPECT_GE(run.summary.r_suc, 0.5);
+  EXPECT_EQ(run.summary.start_grasps.feasible, 0);
+  EXPECT_EQ(run.summary.motion.failed, 0);
   EXPECT_TRUE(fs::exists(folder / "out" / "ruler" / "motion.csv"));
+}
+
+TEST(MainJobTest, AScriptOfTheSameCommandsLeavesTheSameRun) {
+  const TestFolder temporary;
+  const fs::path& folder = temporary.path();
+  setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
+  std::ofstream(folder / "same.lua") << ScriptText();
+  EXPECT_EQ(RunProgram({"run", kScene, "--pictures", "none", "--paths", "2"}, folder).code, 0);
+  const ProgramResult script = RunProgram({"script", (folder / "same.lua").string(), ""}, folder);
+  EXPECT_EQ(script.code, 0) << script.err;
+  ExpectSameRun(folder / "out" / "ruler", folder / "out" / "script");
 }
 
 TEST(MainJobLongTest, FourSeedsOfFiveSucceed) {

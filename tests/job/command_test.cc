@@ -34,8 +34,9 @@ TEST(CommandTest, WhatIsNoCommandIsReportedWithItsPlace) {
     }
     return "none";
   };
-  EXPECT_NE(error_of(R"({"verb": "fly", "node": "a", "options": {}})").find("journal.jsonl:3: verb"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of(R"({"verb": "fly", "node": "a", "options": {}})").find("journal.jsonl:3: verb"),
+      std::string::npos);
   EXPECT_NE(error_of(R"({"verb": "score", "options": {}})").find("node"), std::string::npos);
   EXPECT_NE(error_of(R"({"verb": "score", "node": "a", "options": 3})").find("options"),
             std::string::npos);

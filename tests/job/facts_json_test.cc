@@ -17,7 +17,8 @@ StepFacts SampleFacts(Verb verb, int i) {
   facts.id = "path.1.mppi.3~2";
   facts.command = {verb, "path.1.mppi.2", {{"nodes", i}}};
   facts.t = rng.Uniform();
-  facts.bodies = {{"object", RandomVector(rng), rng.Rotation(), RandomVector(rng), RandomVector(rng)}};
+  facts.bodies = {
+      {"object", RandomVector(rng), rng.Rotation(), RandomVector(rng), RandomVector(rng)}};
   facts.fingers = {{Finger::kIndex, true, i % 2 == 0, false, RandomVector(rng), RandomVector(rng),
                     RandomVector(rng), RandomVector(rng), RandomVector(rng), rng.Uniform()}};
   facts.contacts = {{0, 1, RandomVector(rng), RandomVector(rng), RandomVector(rng), rng.Normal(),

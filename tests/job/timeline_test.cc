@@ -84,8 +84,8 @@ TEST_F(TimelineTest, IdsAreUniqueWhateverIsDoneAndUndone) {
   Timeline timeline(*job);
   MakePath(timeline);
   Rng rng(11);
-  const Verb verbs[] = {Verb::kMesh, Verb::kScore, Verb::kPrune, Verb::kPath, Verb::kIterate,
-                        Verb::kCertify, Verb::kWait, Verb::kTouch};
+  const Verb verbs[] = {Verb::kMesh,    Verb::kScore,   Verb::kPrune, Verb::kPath,
+                        Verb::kIterate, Verb::kCertify, Verb::kWait,  Verb::kTouch};
   for (int i = 0; i < 150; ++i) {
     const Node& from = *timeline.nodes()[rng.UniformInt(timeline.nodes().size())];
     const Verb verb = verbs[rng.UniformInt(std::size(verbs))];
@@ -119,8 +119,7 @@ TEST_F(TimelineTest, TheJournalAloneGivesTheSameFactsOnAnyNumberOfThreads) {
   for (const auto& done : timeline.nodes()) {
     if (done->parent == nullptr) continue;
     const Command command = CommandFromJson(CommandToJson(done->command), "journal");
-    const Node& redone =
-        replayed.Do(replayed.Find(command.node), command.verb, command.options);
+    const Node& redone = replayed.Do(replayed.Find(command.node), command.verb, command.options);
     const auto difference = CompareFacts(done->facts, redone.facts);
     EXPECT_FALSE(difference.has_value()) << done->id() << ": " << difference->field;
   }

@@ -4,11 +4,11 @@
 
 #include "app/core/error.h"
 #include "app/geometry/tessellate.h"
+#include "app/job/timeline.h"
 #include "app/pictures/camera.h"
 #include "app/pictures/forces.h"
 #include "app/pictures/overlay.h"
 #include "app/pictures/words.h"
-#include "app/job/timeline.h"
 #include "render/palette.h"
 #include "tests/job/fixture.h"
 
@@ -20,7 +20,7 @@ using Node = Timeline::Node;
 // The ruler, pressed and pulled.
 class PictureMakerTest : public testing::Test {
  protected:
-  static JobSetup Setup() {
+  static JobSetup MakeSetup() {
     JobSetup setup;
     setup.scene = MakeRulerScene();
     return setup;
@@ -46,7 +46,7 @@ class PictureMakerTest : public testing::Test {
     return maker_.Compose(step, timeline_, {}, config);
   }
 
-  Job job_{Setup(), 1};
+  Job job_{MakeSetup(), 1};
   Timeline timeline_{job_};
   PictureMaker maker_{job_.scene()};
   Vector3 target_ = Vector3::Zero();
@@ -208,8 +208,7 @@ TEST(ForcesTest, PressedPulledRulerObeysTheSpringAndTheCone) {
                         {"p_WTarget", {start.x() + x, start.y(), start.z() + z}},
                         {"seconds", seconds}});
   };
-  const Node& pressed =
-      timeline.Do(move(touched, 0.0, -0.012, 0.5), Verb::kWait, {{"steps", 120}});
+  const Node& pressed = timeline.Do(move(touched, 0.0, -0.012, 0.5), Verb::kWait, {{"steps", 120}});
   // At rest the spring's 12 mm give 0.6 N; the table carries that and the weight.
   const auto split_of = [&](const StepFacts& step) {
     return SplitFingerForce(job.scene(), step.object().q_WB, step.fingers[1]);
@@ -263,8 +262,7 @@ TEST(ChooseViewDirectionTest, LooksWhereNothingIsInTheWay) {
 }
 
 TEST_F(PictureMakerTest, TheWordsSayWhatDecidedTheMotion) {
-  const auto lines =
-      DescribeStep(job_.scene(), Pull(Press(0.11, 0.012), 0.03).facts, timeline_);
+  const auto lines = DescribeStep(job_.scene(), Pull(Press(0.11, 0.012), 0.03).facts, timeline_);
   EXPECT_EQ(lines[0], "The index's target moves by (30, 0, 0) mm in 0.75 s.");
   EXPECT_EQ(lines[1].find("The index sticks to the ruler and takes it along: that needs 0."), 0U)
       << lines[1];

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "app/core/error.h"
-#include "app/core/sha256.h"
 #include "app/core/json_text.h"
+#include "app/core/sha256.h"
 #include "tests/recording/sample_run.h"
 
 namespace pregrasp {
@@ -38,7 +38,7 @@ TEST_F(ManifestTest, EveryFileIsListedWithItsHash) {
   EXPECT_TRUE(manifest["libraries"].contains("mrpt"));
   EXPECT_TRUE(manifest.contains("git_hash"));
   const std::vector<std::string> files = ListRunFiles(run_).files;
-  EXPECT_EQ(files.size(), 15U);
+  EXPECT_EQ(files.size(), 16U);
   EXPECT_EQ(manifest["files"].size(), files.size());
   for (const std::string& file : files) {
     if (file == "manifest.json" || file == "run_Images") continue;

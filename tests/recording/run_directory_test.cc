@@ -6,13 +6,13 @@
 #include <sstream>
 
 #include "app/core/error.h"
-#include "app/core/sha256.h"
 #include "app/core/json_text.h"
+#include "app/core/sha256.h"
 #include "app/job/facts_json.h"
 #include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
-#include "app/recording/summary.h"
 #include "app/recording/scene_file.h"
+#include "app/recording/summary.h"
 #include "tests/recording/sample_run.h"
 
 namespace pregrasp {

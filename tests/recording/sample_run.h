@@ -81,7 +81,8 @@ inline StepFacts SampleStep(int i, std::uint64_t seed = 1) {
   Rng rng(seed, RngStream::kTest, static_cast<std::uint32_t>(i));
   StepFacts step;
   step.id = "sim." + std::to_string(i);
-  step.command = {Verb::kWait, "scene.start", {{"steps", i}, {"note", "\"quoted\", line\nbreak, \xc3\xa9"}}};
+  step.command = {
+      Verb::kWait, "scene.start", {{"steps", i}, {"note", "\"quoted\", line\nbreak, \xc3\xa9"}}};
   step.t = i / 240.0;
   for (const char* name : {"object", "tool", "tool_2"}) {
     const RigidTransform X_WB = RandomPose(rng);

@@ -25,10 +25,9 @@ class SessionTest : public testing::Test {
  protected:
   static const Node& Move(Session& session, const Node& from, const Vector3& by, double seconds) {
     const Vector3 to = from.facts.fingers[1].p_WTarget + by;
-    return session.timeline().Do(from, Verb::kMove,
-                                 {{"finger", "index"},
-                                  {"p_WTarget", {to.x(), to.y(), to.z()}},
-                                  {"seconds", seconds}});
+    return session.timeline().Do(
+        from, Verb::kMove,
+        {{"finger", "index"}, {"p_WTarget", {to.x(), to.y(), to.z()}}, {"seconds", seconds}});
   }
   // Three actions of 0, 60 and 120 physics steps.
   static const Node& Pull(Session& session, bool traced = false) {
@@ -128,8 +127,8 @@ TEST_F(SessionTest, EveryPictureOfARunIsDrawnAgainFromItsFilesWithTheSamePixels)
   session.Shoot(*pulled.parent, Draft(""));
   session.Save(std::nullopt);
   const LoadedRun run = LoadRun(folder_ / "run");
-  PictureDrawer drawer(run.scene, {run.summary.seed, run.manifest["scene_file"],
-                                   run.manifest["command"]});
+  PictureDrawer drawer(run.scene,
+                       {run.summary.seed, run.manifest["scene_file"], run.manifest["command"]});
   std::istringstream lines(ReadFile(folder_ / "run/pictures.jsonl"));
   int count = 0;
   for (std::string line; std::getline(lines, line); ++count) {
