@@ -27,7 +27,9 @@ int Run(int argc, char** argv) {
                "pregrasp");
   app.require_subcommand(0, 1);
   app.set_help_flag("-h,--help", "This text");
-  app.footer("Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of ours.");
+  app.footer(
+      "Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of "
+      "ours.");
   const Command command(app);
   Action action;
   AddCheck(command, action);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kOrder = {
     "app/core",  "app/scene",    "app/geometry",   "app/dynamics", "app/hand",     "app/networks",
     "app/grasp", "app/graph",    "app/trajectory", "app/motion",   "app/training", "app/recording",
-    "render",    "app/pipeline", "bindings",     "app/commands", "app"};
+    "render",    "app/pipeline", "bindings",       "app/commands", "app"};
 
 // Folders of render's and the planner's that are closed to it although they stand above it.
 const std::map<std::string, std::set<std::string>> kOnly = {

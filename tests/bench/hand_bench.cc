@@ -41,7 +41,7 @@ const std::vector<Instance>& Instances(int fingers, bool clutter) {
   if (!instances.empty()) return instances;
   for (int object = 0; object < kNumIkObjects; ++object) {
     for (int i = 0; i < kProblemsPerObject; ++i) {
-      Rng rng(21, RngStream::kTest, 100 * fingers + 10 * object + (clutter ? 1 : 0), i);
+      Rng rng(21, RngStream::kIk, 100 * fingers + 10 * object + (clutter ? 1 : 0), i);
       instances.push_back(
           {MakeSolvableProblem(static_cast<IkObject>(object), fingers, clutter, rng), nullptr});
     }
