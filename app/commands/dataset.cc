@@ -148,7 +148,7 @@ ItemConfig ItemOptions::Resolve() const {
   for (const fs::path& file : excluded.empty() ? EvaluationScenes() : excluded) {
     std::vector<Setting> settings;
     const Scene scene = LoadSceneFile(file, settings);
-    const Rng rng(0, RngStream::kPointCloud);
+    const Rng rng(0, RngStream::kComparedCloud);
     resolved.excluded.push_back(
         {scene.name, SamplePointCloud(scene.object().shape, kCompared, rng).P});
   }

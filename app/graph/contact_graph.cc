@@ -22,8 +22,7 @@ std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& 
                                              const PlacementScorer& context, std::uint64_t seed) {
   std::vector<TriangleSamples> all(mesh.F.rows());
   for (int t = 0; t < static_cast<int>(all.size()); ++t) {
-    Rng rng(seed, RngStream::kGraph, static_cast<std::uint32_t>(finger),
-            static_cast<std::uint32_t>(t));
+    Rng rng(seed, RngStream::kGraphSamples, static_cast<int>(finger), t);
     for (int s = 0; s < samples; ++s) {
       const double u = rng.Uniform();
       const double v = rng.Uniform();

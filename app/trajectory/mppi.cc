@@ -68,8 +68,7 @@ std::vector<std::vector<double>> Mppi::SampleActions(const MppiState& state) con
       actions[i] = state.best_action;
       continue;
     }
-    Rng rng(problem_.seed, RngStream::kMppi, static_cast<std::uint32_t>(state.iteration),
-            static_cast<std::uint32_t>(i));
+    Rng rng(problem_.seed, RngStream::kMppiNoise, problem_.path.rank, state.iteration, i);
     for (double& u : actions[i]) u += sigma * rng.Normal();
   }
   return actions;

@@ -60,7 +60,7 @@ struct MppiProblem {
   const StateScorer* scorer = nullptr;
   WorldState start;
   ContactPath path;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  ///< of the run; path.rank and the iteration key the noise too
 };
 
 class Mppi {

@@ -91,7 +91,8 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
   config.kinematics.ik.max_starts = 5;
   std::string sentence;
   const auto status = [&](const std::vector<GraspContact>& contacts) {
-    const GraspResult result = TestContacts(world, config, contacts, start, Rng(1, RngStream::kIk));
+    const GraspResult result =
+        TestContacts(world, config, contacts, start, Rng(1, RngStream::kTest));
     EXPECT_EQ(result.feasible(), result.status == GraspStatus::kFeasible);
     sentence = Explain(result, world);
     return result.status;
@@ -114,7 +115,7 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
   EXPECT_EQ(TestContacts(heavy_world, config,
                          {OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, -1, 0.01, 0),
                           OnSide(Finger::kMiddle, -1, -0.01, 0)},
-                         start, Rng(1, RngStream::kIk))
+                         start, Rng(1, RngStream::kTest))
                 .status,
             GraspStatus::kWeightNotBalanced);
   // Index and middle finger 17 cm apart.
@@ -148,7 +149,7 @@ TEST(FeasibleGraspTest, RingAndLittleMayBeDroppedButNoOther) {
   five.push_back(five.front());
   five.back().finger = Finger::kLittle;
   const HandConfiguration warm_start = three.kinematics->ik.configuration();
-  const Rng rng(1, RngStream::kIk);
+  const Rng rng(1, RngStream::kTest);
   GraspConfig config;
   const GraspResult dropped = TestGrasp(world, config, five, world.StartPoses(), rng, &warm_start);
   EXPECT_TRUE(dropped.feasible());
@@ -212,7 +213,7 @@ TEST(ContactSamplerTest, SetsArePlausible) {
     EXPECT_LT(sampler.num_points(Finger::kThumb), sampler.num_points(Finger::kIndex));
     int drawn = 0, opposed = 0, fingers[6] = {};
     for (int i = 0; i < 500; ++i) {
-      Rng rng(1, RngStream::kGrasp, 1, i);
+      Rng rng(1, RngStream::kTest, 1, i);
       const auto contacts = sampler.Sample({}, rng);
       if (!contacts) continue;
       ++drawn;

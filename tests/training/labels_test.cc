@@ -23,7 +23,7 @@ TEST(LabelsTest, AfterTwoReliefsWithoutAnyNoSmallerOneHasAny) {
     const CloudStructure structure = generator.BuildStructure(cloud.P, X_WB[0].linear());
     const ContactSampler sampler(world, X_WB, {});
     for (int which = 0; which < 3; ++which) {
-      Rng rng(3, RngStream::kDataset, static_cast<std::uint32_t>(index), 10 + which);
+      Rng rng(3, RngStream::kTest, static_cast<std::uint32_t>(index), 10 + which);
       const PlanningContacts contacts =
           SampleLabelContacts(world, sampler, {}, which, config, X_WB, rng);
       ASSERT_EQ(GeneratorOf(contacts), which);

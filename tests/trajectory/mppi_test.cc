@@ -51,6 +51,24 @@ TEST(MppiTest, OneAndTwoThreadsGiveTheSameBits) {
   ExpectSameBits(RunIterations(mppi, 3, 1), RunIterations(mppi, 3, 2));
 }
 
+// A run's seed in the low half of a word and a path's rank in the high half would make these two
+// the same search.
+TEST(MppiTest, NoPathOfASeedDrawsThePlansOfAnotherSeedsPath) {
+  const RulerProblem ruler;
+  MppiProblem second = ruler.Make(1, 1), first = ruler.Make(1, 1 + (1ULL << 32));
+  second.path.rank = 2;
+  first.path.rank = 1;
+  MppiProblem other_seed = first;
+  other_seed.seed = 1;
+  const auto mean = [](const MppiProblem& problem) {
+    return RunIterations(Mppi(problem, QuickConfig()), 1, 1).mean;
+  };
+  EXPECT_EQ(mean(second), mean(second));
+  EXPECT_NE(mean(second), mean(first));
+  EXPECT_NE(mean(first), mean(other_seed));
+  EXPECT_NE(mean(second), mean(other_seed));
+}
+
 TEST(MppiTest, GoingBackAndOnAgainGivesTheSameBits) {
   const RulerProblem ruler;
   const Mppi mppi(ruler.Make(1, 7), QuickConfig());
