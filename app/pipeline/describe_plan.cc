@@ -18,6 +18,15 @@ std::string NodeText(const ContactNode& node) {
   return fmt::format("node {} (thumb {}, index {})", node.id, node.thumb, node.index);
 }
 
+// What decided at a cut through nodes of equal score; `other` is what was looked at then.
+std::string TieText(int num_tied, TieRule rule, const char* other) {
+  if (rule == TieRule::kNone) return "";
+  const std::string tied = fmt::format("; {} states score exactly that, of which ", num_tied);
+  return rule == TieRule::kScores
+             ? tied + fmt::format("those with the higher score {} stay", other)
+             : tied + "some, alike in both scores, stay for their lower numbers alone";
+}
+
 double Millimetres(double metres) { return 1e3 * metres; }
 
 }  // namespace
@@ -87,17 +96,22 @@ std::string DescribeReason(const NodeReason& reason) {
   const ContactNode& node = reason.node;
   using Verdict = NodeReason::Verdict;
   if (reason.verdict == Verdict::kNotScored) return NodeText(node) + " has no score yet";
-  const auto by = [&](const char* where, double score, int rank, double threshold) {
-    return fmt::format("{} it scores {:.3f}, rank {} of {} (the best {} stay, down to {:.3f})",
-                       where, score, rank, reason.num_nodes, reason.num_kept_each, threshold);
+  const auto by = [&](const char* where, double score, int rank, double threshold,
+                      const std::string& tie) {
+    return fmt::format("{} it scores {:.3f}, rank {} of {} (the best {} stay, down to {:.3f}{})",
+                       where, score, rank, reason.num_nodes, reason.num_kept_each, threshold, tie);
   };
   std::string text = NodeText(node);
   text += reason.verdict == Verdict::kPruned          ? " is pruned: "
+          : reason.verdict == Verdict::kScored        ? " is scored and not decided on: "
           : reason.verdict == Verdict::kKeptByContext ? " is kept for its score here: "
           : reason.verdict == Verdict::kKeptByFree    ? " is kept for its score alone: "
                                                       : " is kept for both its scores: ";
-  text += by("here", node.s_c, node.rank_c, reason.threshold_c) + "; ";
-  text += by("without surroundings", node.s_n, node.rank_n, reason.threshold_n);
+  text += by("here", node.s_c, node.rank_c, reason.threshold_c,
+             TieText(reason.num_tied_c, reason.rule_c, "without surroundings")) +
+          "; ";
+  text += by("without surroundings", node.s_n, node.rank_n, reason.threshold_n,
+             TieText(reason.num_tied_n, reason.rule_n, "here"));
   if (node.occluded > 0.0) {
     text += fmt::format("; no fingertip can be at {:.0f} % of its contacts", 100 * node.occluded);
   }
@@ -110,6 +124,13 @@ std::vector<std::string> DescribePath(const ContactGraph& graph, const ContactPa
                   "its scores.",
                   path.rank, path.nodes.size(), path.rank),
       fmt::format("score\t{:.3f}", path.score)};
+  if (path.num_tied > 1) {
+    lines[0] += fmt::format(" {}{} paths have exactly this score; {}.", path.num_tied,
+                            path.num_tied == kMostTied ? " or more" : "",
+                            path.rule == TieRule::kScores
+                                ? "the ranks of their states decide among them"
+                                : "the order of some is that of their states' numbers");
+  }
   for (std::size_t i = 0; i < path.nodes.size(); ++i) {
     const ContactNode& node = graph.nodes().at(path.nodes[i]);
     lines.push_back(fmt::format("stage {}\t{:.3f}, thumb {}, index {}", i + 1, path.terms[i],
@@ -123,8 +144,7 @@ std::vector<std::string> DescribeIteration(const MppiState& state) {
   std::vector<std::string> lines = {
       fmt::format("Iteration {}: {} plans near the mean were simulated; the ghosts are where the "
                   "best of them leave the object, and the mean moves towards them.{}",
-                  state.iteration, state.samples.size(),
-                  state.converged ? " The best cost has stopped falling." : ""),
+                  state.iteration, state.samples.size(), state.converged ? " The best cost has stopped falling." : ""),
       fmt::format("best cost\t{:.3f}", state.best_cost),
       fmt::format("mean cost\t{:.3f}", state.mean_history.back())};
   for (std::size_t i = 0; i < best.stage_scores.size(); ++i) {

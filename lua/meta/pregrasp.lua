@@ -352,20 +352,20 @@ function Graph:shot(options) end
 ---@field index integer triangle
 ---@field s_c number score among the surroundings, mean of its placements, 0 to 1
 ---@field s_n number score without surroundings
----@field rank_c integer 1 is the best by s_c
----@field rank_n integer the same by s_n
+---@field rank_c integer 1 is the best by s_c; of equal ones by s_n, then by id
+---@field rank_n integer 1 is the best by s_n; of equal ones by s_c, then by id
 ---@field occluded number share of its contacts where no fingertip can be
 ---@field initial boolean may begin a path
 ---@field kept boolean
 
 ---@class Reason
 ---@field text string the sentence
----@field verdict "not_scored"|"kept_by_context"|"kept_by_free"|"kept_by_both"|"pruned"
+---@field verdict "not_scored"|"scored"|"kept_by_context"|"kept_by_free"|"kept_by_both"|"pruned"
 ---@field kept boolean
 ---@field id integer
 ---@field node ContactState
----@field threshold_c number the lowest s_c that was kept
----@field threshold_n number the lowest s_n that was kept
+---@field threshold_c number the lowest s_c among the top percent by it
+---@field threshold_n number the lowest s_n among the top percent by it
 ---@field num_nodes integer
 ---@field num_kept_each integer how many the top percent are
 
