@@ -40,7 +40,7 @@ std::shared_ptr<const Mppi> MakeMppi(const Planning& planning, const PlannerConf
 }
 
 bool OptimizerStep(lua_State* L, LuaOptimizer& optimizer) {
-  if (optimizer.state().converged) return false;
+  if (optimizer.state().ended()) return false;
   Planning& planning = *optimizer.planning;
   MppiState next = optimizer.state();
   planning.record.Time("trajectory", [&] { optimizer.mppi->Step(next, planning.planner.pool()); });
@@ -128,7 +128,7 @@ Pushed OptimizerBest(lua_State* L, LuaOptimizer& optimizer) {
   PushCost(L, optimizer.state().best);
   return {1};
 }
-bool OptimizerConverged(LuaOptimizer& optimizer) { return optimizer.state().converged; }
+bool OptimizerConverged(LuaOptimizer& optimizer) { return optimizer.state().converged(); }
 std::vector<double> OptimizerBestHistory(LuaOptimizer& optimizer) {
   return optimizer.state().best_history;
 }

@@ -27,6 +27,18 @@ std::string TieText(int num_tied, TieRule rule, const char* other) {
              : tied + "some, alike in both scores, stay for their lower numbers alone";
 }
 
+const char* EndText(MppiEnd end) {
+  switch (end) {
+    case MppiEnd::kNone:
+      return "";
+    case MppiEnd::kPatience:
+      return " The best cost has stopped falling.";
+    case MppiEnd::kLimit:
+      return " The iterations are used up.";
+  }
+  return "";
+}
+
 double Millimetres(double metres) { return 1e3 * metres; }
 
 }  // namespace
@@ -144,7 +156,7 @@ std::vector<std::string> DescribeIteration(const MppiState& state) {
   std::vector<std::string> lines = {
       fmt::format("Iteration {}: {} plans near the mean were simulated; the ghosts are where the "
                   "best of them leave the object, and the mean moves towards them.{}",
-                  state.iteration, state.samples.size(), state.converged ? " The best cost has stopped falling." : ""),
+                  state.iteration, state.samples.size(), EndText(state.end)),
       fmt::format("best cost\t{:.3f}", state.best_cost),
       fmt::format("mean cost\t{:.3f}", state.mean_history.back())};
   for (std::size_t i = 0; i < best.stage_scores.size(); ++i) {
@@ -177,7 +189,7 @@ std::vector<std::string> DescribeCertificate(const Scene& scene, const Certifica
     }
     lines.push_back("Not certified: " + reasons + ".");
   }
-  lines.push_back(fmt::format("moves in 1.5 s\t{:.2f} mm, {:.2f} deg",
+  lines.push_back(fmt::format("moves in {:g} s\t{:.2f} mm, {:.2f} deg", certificate.hold_seconds,
                               Millimetres(certificate.hold_shift), certificate.hold_turn_deg));
   lines.push_back(fmt::format("at half the step\t{:.2f} mm, {:.2f} deg elsewhere",
                               Millimetres(certificate.step_shift), certificate.step_turn_deg));

@@ -247,11 +247,12 @@ void PlanRecord::AddIteration(const Mppi& mppi, const MppiState& state) {
   for (const MppiSample& sample : state.samples) costs.push_back(sample.cost.total);
   step.record.details = {{"best_cost", state.best_cost},
                          {"mean_cost", state.mean_history.back()},
-                         {"converged", state.converged},
+                         {"converged", state.converged()},
+                         {"end", MppiEndName(state.end)},
                          {"costs", costs}};
   step.lines = DescribeIteration(state);
   step.overlay = ShowRollouts(state);
-  step.key = state.iteration == 1 || state.iteration % kEvery == 0 || state.converged;
+  step.key = state.iteration == 1 || state.iteration % kEvery == 0 || state.ended();
   session_.AddStep(std::move(step));
   num_rollouts_ += static_cast<long>(state.samples.size());
   outcome_.summary["counts"]["iterations"] = ++num_iterations_;

@@ -99,7 +99,7 @@ class Runner {
     attempt.mppi = std::make_unique<Mppi>(planner_.MakeMppi(*graph_, path, config));
     attempt.state = attempt.mppi->Start();
     const std::string stage = fmt::format("path {} of {}, trajectory", index + 1, config_.paths);
-    while (!attempt.state.converged) {
+    while (!attempt.state.ended()) {
       Report(stage, attempt.state.iteration, config.iterations);
       record_.Time("trajectory", [&] { attempt.mppi->Step(attempt.state, planner_.pool()); });
       record_.AddIteration(*attempt.mppi, attempt.state);

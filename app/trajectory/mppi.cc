@@ -122,7 +122,14 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
   const bool stalled =
       state.iteration > patience &&
       state.best_history[state.iteration - 1 - patience] - state.best_cost < config_.progress;
-  state.converged = stalled || state.iteration >= config_.iterations;
+  state.end = stalled                                 ? MppiEnd::kPatience
+              : state.iteration >= config_.iterations ? MppiEnd::kLimit
+                                                      : MppiEnd::kNone;
+}
+
+const char* MppiEndName(MppiEnd end) {
+  constexpr const char* kNames[] = {"", "patience", "limit"};
+  return kNames[static_cast<int>(end)];
 }
 
 void Mppi::MoveMean(MppiState& state) const {

@@ -404,7 +404,7 @@ function Path:optimize(options) end
 ---@field sigma? number standard deviation of the noise in the first iteration, 1.2
 ---@field final_sigma? number and in the last, 0.3
 ---@field temperature? number lambda over the standard deviation of the costs, 0.3
----@field patience? integer iterations without progress after which it has converged, 7
+---@field patience? integer iterations without progress after which it has ended, 7
 ---@field progress? number what counts as progress, 0.01
 ---@field max_travel? number of a target in a knot, each axis [m], 0.03
 ---@field stage_seconds? number of one contact stage, 0.8
@@ -433,7 +433,7 @@ function Path:shot(options) end
 ---@field best_cost number? of all iterations; nil before the first
 ---@field mean_cost number? of the last iteration's rollouts
 ---@field best CostTerms of the best plan so far
----@field converged boolean
+---@field converged boolean it ended for want of progress, not at the limit of iterations
 ---@field best_history number[] best_cost after each iteration
 ---@field mean_history number[]
 ---@field path_rank integer
@@ -441,7 +441,7 @@ function Path:shot(options) end
 local Optimizer = {}
 
 ---One iteration.
----@return boolean # false, and nothing done, when it has converged
+---@return boolean # false, and nothing done, when it has ended
 function Optimizer:step() end
 
 ---Takes iterations back.

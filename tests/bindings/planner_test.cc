@@ -162,7 +162,7 @@ TEST_F(PlannerScriptTest, AnOptimisationIsSteppedTakenBackAndForkedExactly) {
     print(o:step(), o.iteration)
     local r = last[1]
     print(r.cost == r.terms.total, #r.terms.stage_scores, r.weight >= 0, #r.X_WO.p))"),
-            "Optimizer(path 1, iteration 0)\t0\tnil\tnil\t0\n4\ttrue\t4\t6\ttrue\tpath.1.mppi.4\n"
+            "Optimizer(path 1, iteration 0)\t0\tnil\tnil\t0\n4\tfalse\t4\t6\ttrue\tpath.1.mppi.4\n"
             "2\tpath.1.mppi.2\tfalse\ntrue\ttrue\tfalse\ttrue\nfalse\t4\ntrue\t2\ttrue\t3\n");
 }
 

@@ -36,7 +36,7 @@ TEST(MppiTest, DragsTheRulerOverTheEdge) {
     const Mppi mppi(ruler.Make(2, seed), MppiConfig());
     ThreadPool pool(2);
     MppiState state = mppi.Start();
-    while (!state.converged) mppi.Step(state, pool);
+    while (!state.ended()) mppi.Step(state, pool);
     const PlanOutcome outcome = mppi.Simulate(state.best_action);
     const double overhang = (outcome.end.bodies[0].X_WB() * Vector3(0.15, 0, 0)).x();
     solved += overhang > 0.06;
@@ -106,6 +106,24 @@ TEST(MppiTest, TheBestCostNeverRisesAndWeightsSumToOne) {
   double sum = 0.0;
   for (const MppiSample& sample : state.samples) sum += sample.weight;
   EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+TEST(MppiTest, ItSaysWhetherPatienceOrTheLimitOfIterationsEndedIt) {
+  const RulerProblem ruler;
+  MppiConfig config = QuickConfig();
+  config.iterations = 3;
+  MppiState state = RunIterations(Mppi(ruler.Make(1, 1), config), 2, 1);
+  EXPECT_FALSE(state.ended());
+  state = RunIterations(Mppi(ruler.Make(1, 1), config), 3, 1);
+  EXPECT_EQ(state.end, MppiEnd::kLimit);
+  EXPECT_FALSE(state.converged());
+  config.patience = 2;
+  config.progress = 100.0;  // more than any cost can fall by
+  state = RunIterations(Mppi(ruler.Make(1, 1), config), 2, 1);
+  EXPECT_FALSE(state.ended());
+  state = RunIterations(Mppi(ruler.Make(1, 1), config), 3, 1);
+  EXPECT_EQ(state.end, MppiEnd::kPatience);  // and not the limit, which is reached as well
+  EXPECT_TRUE(state.converged());
 }
 
 TEST(MppiTest, APlanWithoutContactIsTheWorstKindOfRest) {
