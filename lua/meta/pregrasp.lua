@@ -573,7 +573,7 @@ function Grasps:best() end
 
 ---@class Grasp
 ---@field feasible boolean
----@field reason string "feasible", or the first demand that cannot be met
+---@field reason string "feasible", or the first demand that is not met
 ---@field raw_reason string the same without refinement
 ---@field text string a sentence: which fingers, and what stands in the way
 ---@field sample integer
@@ -806,9 +806,9 @@ function pregrasp.wrench(options) end
 ---@field closed boolean force closure: margin > 0
 ---@field margin number Ferrari and Canny's epsilon, signed
 ---@field min_normal number smallest normal part of the forces [N]
----@field forces Vector3[] on the object, of least effort [N]
+---@field forces Vector3[] on the object [N]: of least effort, or, if not feasible, those on which the proof ended
 ---@field status string "feasible", or the condition that fails
----@field residual number net wrench that is left, 0 if feasible
+---@field residual number net wrench that these leave [N, torques over torque_scale]: rounding if feasible, else at least what is missing
 
 ---A hand pose whose fingertips touch the contacts, within cones of 60 degrees, without overlap with
 ---the scene's bodies at the start, the object and the hand itself; certified by FCL.
@@ -834,7 +834,7 @@ function pregrasp.ik(options) end
 ---@field n Vector3 the surface's normal there, into the object; with a scene either side will do
 
 ---@class IkResult
----@field status string "solved", or what cannot be met
+---@field status string "solved", or what is not met
 ---@field solved boolean
 ---@field X_WH Transform of the palm
 ---@field q HandJoints
