@@ -19,7 +19,7 @@ Pushed PushCloud(lua_State* L, Session& session, int points) {
     throw InputError("", "points", "1 to 4096", std::to_string(points));
   }
   const PointCloud cloud = SamplePointCloud(session.scene().object().shape, points,
-                                            Rng(session.config().seed, RngStream::kPointCloud));
+                                            Rng(session.config().seed, RngStream::kObjectCloud));
   RecordWriter(L, kCloud)
       .Set("count", static_cast<int>(cloud.P.rows()))
       .Set("points", cloud.P)

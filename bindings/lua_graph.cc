@@ -38,6 +38,8 @@ const char* VerdictName(NodeReason::Verdict verdict) {
   switch (verdict) {
     case NodeReason::Verdict::kNotScored:
       return "not_scored";
+    case NodeReason::Verdict::kScored:
+      return "scored";
     case NodeReason::Verdict::kKeptByContext:
       return "kept_by_context";
     case NodeReason::Verdict::kKeptByFree:

@@ -129,7 +129,7 @@ Pushed Ik(lua_State* L, IkOptions& options) {
   TurnNormalsOutward(options.session.get(), options.contacts);
   IkProblem problem;
   problem.contacts = options.contacts;
-  const Rng rng(static_cast<std::uint64_t>(options.seed), RngStream::kIk);
+  const Rng rng(static_cast<std::uint64_t>(options.seed), RngStream::kScriptIk);
   const HandModel& hand = ShadowHand();
   IkResult result;
   if (options.session) {

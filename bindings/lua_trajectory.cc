@@ -33,11 +33,12 @@ void PushCost(lua_State* L, const CostFacts& cost) {
 // The optimiser.
 
 bool OptimizerConverged(LuaOptimizer& optimizer) {
-  return optimizer.settings.empty() && optimizer.facts() != nullptr && optimizer.facts()->converged;
+  return optimizer.facts() != nullptr && optimizer.facts()->converged;
 }
 
 bool OptimizerStep(lua_State* L, LuaOptimizer& optimizer) {
-  if (OptimizerConverged(optimizer)) return false;
+  const IterationFacts* last = optimizer.facts();
+  if (last != nullptr && !last->end.empty() && optimizer.settings.empty()) return false;
   optimizer.Do(Verb::kIterate);
   CountMemory(L, kIterationKib);
   return true;

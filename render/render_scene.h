@@ -43,8 +43,8 @@ struct RenderArrow {
   Rgba color;
 };
 
-/// A friction cone: apex, axis (its length is the cone's height), half angle [rad]. Translucent: 0.3
-/// opaque at most, whatever `color` asks for; its rim is drawn stronger.
+/// A friction cone: apex, axis (its length is the cone's height), half angle [rad]. Translucent:
+/// 0.3 opaque at most, whatever `color` asks for; its rim is drawn stronger.
 struct RenderCone {
   Vector3 p_W = Vector3::Zero(), axis_W = Vector3::UnitZ();
   float half_angle = 0.6F;

@@ -1,5 +1,5 @@
 -- A ruler lies flat on a table, its end a centimetre inboard of the edge. Nothing to get hold of:
--- only when about two centimetres of it stand over the edge can a hand close on it.
+-- only when about one centimetre of it stands over the edge can a hand close on it.
 return scene {
   name = "ruler",
   object = {

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "app/core/error.h"
 #include "app/geometry/point_cloud.h"
 #include "app/training/dataset_run.h"
+#include "app/training/evaluation_scenes.h"
 #include "bindings/scene_file.h"
 
 namespace pregrasp {
@@ -43,19 +43,6 @@ void ParseShard(const std::string& text, DatasetRun& run) {
   if (!slash || second.ec != std::errc() || second.ptr != end) {
     throw InputError("--shard", "", "i/n, such as 1/2", text);
   }
-}
-
-// Every scene file in the folders that hold evaluation objects.
-std::vector<fs::path> EvaluationScenes() {
-  std::vector<fs::path> files;
-  for (const char* folder : {"scenes", "app/training/evaluation_objects"}) {
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(DataFolder() / folder, none)) {
-      if (entry.path().extension() == ".lua") files.push_back(entry.path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 // Shows how the items of a run come along.
@@ -145,10 +132,10 @@ void ItemOptions::AddLabelsTo(const Subcommand& command) {
 ItemConfig ItemOptions::Resolve() const {
   constexpr int kCompared = 500;  // points of an excluded object
   ItemConfig resolved = config;
-  for (const fs::path& file : excluded.empty() ? EvaluationScenes() : excluded) {
+  for (const fs::path& file : excluded.empty() ? FindEvaluationScenes(DataFolder()) : excluded) {
     std::vector<Setting> settings;
     const Scene scene = LoadSceneFile(file, settings);
-    const Rng rng(0, RngStream::kPointCloud);
+    const Rng rng(0, RngStream::kComparedCloud);
     resolved.excluded.push_back(
         {scene.name, SamplePointCloud(scene.object().shape, kCompared, rng).P});
   }

@@ -96,7 +96,7 @@ int MakePictures(const PictureOptions& options) {
   ProgressLine line;
   Image sheet;
   for (int k = 0; k < options.count; ++k) {
-    Rng rng(config.seed, RngStream::kTest, 1, static_cast<std::uint32_t>(k));
+    Rng rng(config.seed, RngStream::kPicturedItems, k);
     const DatasetItem& item =
         dataset.items[rng.UniformInt(static_cast<std::uint32_t>(dataset.items.size()))];
     std::vector<int> contexts;

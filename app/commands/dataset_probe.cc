@@ -53,7 +53,7 @@ class Prober {
         scene_(LoadScene(options.scene)),
         world_(MakeTrainingWorld(scene_)),
         cloud_(SamplePointCloud(scene_.object().shape, 512,
-                                Rng(options.seed, RngStream::kPointCloud))),
+                                Rng(options.seed, RngStream::kObjectCloud))),
         score_(ScoreFunction::Load(options.score)),
         scorer_(score_, scene_, cloud_, world_.environment(), pool_) {
     for (int which = 0; which < kCases; ++which) {
@@ -108,7 +108,7 @@ class Prober {
     config.anywhere = 0.0;
     std::vector<PlanningContacts> contacts;
     for (int i = 0; i < options_.contacts; ++i) {
-      Rng rng(options_.seed, RngStream::kDataset, which, i);
+      Rng rng(options_.seed, RngStream::kProbedContacts, which, i);
       contacts.push_back(SampleLabelContacts(world_, sampler, {}, which, config, X_WB, rng));
     }
     return contacts;
@@ -134,7 +134,7 @@ class Prober {
     config.tries = options_.tries;
     std::vector<double> values(contacts.size());
     pool_.ParallelFor(static_cast<int>(values.size()), [&](int i, int) {
-      const Rng rng(options_.seed, RngStream::kDataset, kCases, i);
+      const Rng rng(options_.seed, RngStream::kProbedLabels, i);
       values[i] =
           CalcLabel(world, *generator_, cloud_, structure, contacts[i], config, rng).Value();
     });

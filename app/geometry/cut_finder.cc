@@ -124,7 +124,7 @@ std::vector<Plane> CutFinder::ListPlanes(const MatrixX3& P) const {
 }
 
 std::vector<Cut> CutFinder::Find(const std::vector<SolidPart>& parts) const {
-  Rng rng(0, RngStream::kDecomposition, 1);
+  Rng rng(0, RngStream::kMeshCuts);
   const MatrixX3 P = SampleSurface(parts, rng);
   const std::vector<Pair> pairs = FindPairs(P, rng);
   double total = 0.0;

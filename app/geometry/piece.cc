@@ -117,7 +117,7 @@ void PieceMaker::Measure(Piece& piece, int finer) const {
       if (hull.F(f, i) < hull.F(f, (i + 1) % 3)) visit(0.5 * (t[i] + t[(i + 1) % 3]));
     }
   }
-  Rng rng(0, RngStream::kDecomposition, 2);
+  Rng rng(0, RngStream::kPieceSamples);
   const double spacing = kSampleSpacing * config_.concavity;
   const int samples =
       static_cast<int>(std::clamp<double>(sum / (spacing * spacing), kFewestSamples, kMostSamples));

@@ -22,8 +22,7 @@ std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& 
                                              const PlacementScorer& context, std::uint64_t seed) {
   std::vector<TriangleSamples> all(mesh.F.rows());
   for (int t = 0; t < static_cast<int>(all.size()); ++t) {
-    Rng rng(seed, RngStream::kGraph, static_cast<std::uint32_t>(finger),
-            static_cast<std::uint32_t>(t));
+    Rng rng(seed, RngStream::kGraphSamples, static_cast<int>(finger), t);
     for (int s = 0; s < samples; ++s) {
       const double u = rng.Uniform();
       const double v = rng.Uniform();
@@ -124,13 +123,22 @@ class NodeSampler {
   std::array<std::vector<TriangleSamples>, kNumPlanningFingers> samples_;
 };
 
-// Node ids from the best `score` to the worst; ties by id.
-std::vector<int> OrderBy(const std::vector<ContactNode>& nodes, double ContactNode::*score) {
+// Node ids from the best `score` to the worst; of equal ones by the `other` score, then by id.
+std::vector<int> OrderBy(const std::vector<ContactNode>& nodes, double ContactNode::*score,
+                         double ContactNode::*other) {
   std::vector<int> order(nodes.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return nodes[a].*score > nodes[b].*score; });
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
+    const ContactNode &a = nodes[i], &b = nodes[j];
+    return a.*score != b.*score ? a.*score > b.*score : a.*other > b.*other;
+  });
   return order;
+}
+
+// Of two nodes of which one is in the top M percent by `score` and the other is not.
+TieRule FindRule(const ContactNode& a, const ContactNode& b, double ContactNode::*score) {
+  if (a.*score != b.*score) return TieRule::kNone;
+  return a.s_c != b.s_c || a.s_n != b.s_n ? TieRule::kScores : TieRule::kNumber;
 }
 
 }  // namespace
@@ -182,8 +190,8 @@ void ContactGraph::Score(const SignedDistance& shape, const PlacementScorer& con
       node.occluded = sampler.OccludedShare(thumb, index);
     }
   }
-  order_c_ = OrderBy(nodes_, &ContactNode::s_c);
-  order_n_ = OrderBy(nodes_, &ContactNode::s_n);
+  order_c_ = OrderBy(nodes_, &ContactNode::s_c, &ContactNode::s_n);
+  order_n_ = OrderBy(nodes_, &ContactNode::s_n, &ContactNode::s_c);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     nodes_[order_c_[i]].rank_c = static_cast<int>(i) + 1;
     nodes_[order_n_[i]].rank_n = static_cast<int>(i) + 1;
@@ -272,6 +280,22 @@ int ContactGraph::num_edges() const {
   return (count + static_cast<int>(kept_.size())) / 2;
 }
 
+void ContactGraph::ExplainCut(const std::vector<int>& order, double ContactNode::*score, int rank,
+                              double* threshold, int* num_tied, TieRule* rule) const {
+  const int count = NumKeptEach();
+  const ContactNode& last = nodes_[order[count - 1]];
+  *threshold = last.*score;
+  *num_tied =
+      static_cast<int>(std::count_if(nodes_.begin(), nodes_.end(), [&](const ContactNode& node) {
+        return node.*score == last.*score;
+      }));
+  if (rank > count) {
+    *rule = FindRule(nodes_[order[rank - 1]], last, score);
+  } else if (count < static_cast<int>(order.size())) {
+    *rule = FindRule(nodes_[order[rank - 1]], nodes_[order[count]], score);
+  }
+}
+
 NodeReason ContactGraph::Why(int id) const {
   if (id < 0 || id >= static_cast<int>(nodes_.size())) {
     throw InputError("", "node", "an id from 0 to " + std::to_string(nodes_.size() - 1),
@@ -282,15 +306,22 @@ NodeReason ContactGraph::Why(int id) const {
   reason.num_nodes = static_cast<int>(nodes_.size());
   if (stage_ == GraphStage::kMeshed) return reason;
   reason.num_kept_each = NumKeptEach();
-  reason.threshold_c = nodes_[order_c_[reason.num_kept_each - 1]].s_c;
-  reason.threshold_n = nodes_[order_n_[reason.num_kept_each - 1]].s_n;
-  const bool by_context = reason.node.rank_c <= reason.num_kept_each;
-  const bool by_free = reason.node.rank_n <= reason.num_kept_each;
+  ExplainCut(order_c_, &ContactNode::s_c, reason.node.rank_c, &reason.threshold_c,
+             &reason.num_tied_c, &reason.rule_c);
+  ExplainCut(order_n_, &ContactNode::s_n, reason.node.rank_n, &reason.threshold_n,
+             &reason.num_tied_n, &reason.rule_n);
+  // As far as the pruning has come.
+  const bool context_done = stage_ >= GraphStage::kPrunedContext;
+  const bool free_done = stage_ >= GraphStage::kPrunedFree;
+  const int best_c = context_done ? reason.num_kept_each : num_done_;
+  const int best_n = free_done ? reason.num_kept_each : context_done ? num_done_ : 0;
+  const bool by_context = reason.node.rank_c <= best_c, by_free = reason.node.rank_n <= best_n;
   using Verdict = NodeReason::Verdict;
   reason.verdict = by_context && by_free ? Verdict::kKeptByBoth
                    : by_context          ? Verdict::kKeptByContext
                    : by_free             ? Verdict::kKeptByFree
-                                         : Verdict::kPruned;
+                   : free_done           ? Verdict::kPruned
+                                         : Verdict::kScored;
   return reason;
 }
 

@@ -36,23 +36,42 @@ struct ContactNode {
   int thumb = 0, index = 0;
   double s_c = 0.0;  ///< mean score in the context of the surroundings
   double s_n = 0.0;  ///< mean score without surroundings
-  int rank_c = 0;    ///< 1 is the best by s_c; ties by id
-  int rank_n = 0;    ///< the same by s_n
+  int rank_c = 0;    ///< 1 is the best by s_c; of equal ones by s_n, then by id
+  int rank_n = 0;    ///< 1 is the best by s_n; of equal ones by s_c, then by id
   double occluded =
       0.0;               ///< share of the sampled contacts where a fingertip cannot be at the start
   bool initial = false;  ///< in V_c: may start a path
   bool kept = false;     ///< in V
 };
 
+/// What decided between nodes, or paths, of exactly equal score. Equal s_c are common: wherever the
+/// thumb's triangle is out of reach of any fingertip, all its nodes score by the index alone.
+enum class TieRule {
+  kNone,    ///< the scores differ
+  kScores,  ///< nodes: the other of s_c and s_n; paths: the ranks of the first nodes that differ
+  kNumber,  ///< these are equal too: the lower id, which means nothing
+};
+
 /// Why a node is in the graph or not: the numbers that decided.
 struct NodeReason {
-  enum class Verdict { kNotScored, kKeptByContext, kKeptByFree, kKeptByBoth, kPruned };
+  enum class Verdict {
+    kNotScored,
+    kScored,  ///< the pruning has not come so far as to decide
+    kKeptByContext,
+    kKeptByFree,
+    kKeptByBoth,
+    kPruned
+  };
   Verdict verdict = Verdict::kNotScored;
   ContactNode node;
   int num_nodes = 0;
   int num_kept_each = 0;     ///< how many nodes the top M percent are
-  double threshold_c = 0.0;  ///< the lowest s_c that was kept
-  double threshold_n = 0.0;  ///< the lowest s_n that was kept
+  double threshold_c = 0.0;  ///< the lowest s_c among the top M percent by s_c
+  double threshold_n = 0.0;  ///< the lowest s_n among the top M percent by s_n
+  int num_tied_c = 0;        ///< nodes whose s_c is exactly threshold_c, whichever side they are on
+  int num_tied_n = 0;        ///< nodes whose s_n is exactly threshold_n
+  /// What sets this node apart from the nearest one on the other side of the cut by s_c, by s_n.
+  TieRule rule_c = TieRule::kNone, rule_n = TieRule::kNone;
 };
 
 /// The contact-state graph (paper, section "Contact state graph", Algorithm 1) as a value. Each
@@ -101,6 +120,9 @@ class ContactGraph {
 
  private:
   int NumKeptEach() const;
+  // Of the cut by one of the scores.
+  void ExplainCut(const std::vector<int>& order, double ContactNode::*score, int rank,
+                  double* threshold, int* num_tied, TieRule* rule) const;
   void ConnectNode(int id);
 
   TriangleMesh mesh_;

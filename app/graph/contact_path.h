@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "app/graph/contact_graph.h"
@@ -9,13 +10,23 @@ namespace pregrasp {
 /// A sequence of contact states, one a contact stage (paper, section "Trajectory optimization").
 struct ContactPath {
   std::vector<int> nodes;     ///< node ids, first to last
-  double score = 0.0;         ///< s_c(v_1) + sum over i > 1 of s_n(v_i)
+  double score = 0.0;         ///< s_c(v_1) + sum over i > 1 of s_n(v_i), added from the last on
   std::vector<double> terms;  ///< its summands
   int rank = 0;               ///< 1 is the best of all paths
+  /// How many paths have exactly this score, itself among them; kMostTied means as many or more.
+  int num_tied = 1;
+  /// What orders it among these: where two first differ, the node of better rank goes first (rank_c
+  /// in the first stage, rank_n after it), so that its scores decide, or its number if it decides
+  /// against any neighbour in the order. kNone if it is alone.
+  TieRule rule = TieRule::kNone;
 };
 
+/// Paths of equal score are counted up to this many.
+inline constexpr int kMostTied = 1000;
+
 /// The paths that differ from `path` in their last node only and come after it, best first, at most
-/// `count`: what it beat. Their ranks are unknown (0).
+/// `count`: what it beat. Their ranks are unknown (0); `num_tied` counts such paths alone, and
+/// `rule` is what decided between the sibling and `path`.
 std::vector<ContactPath> FindSiblings(const ContactGraph& graph, const ContactPath& path,
                                       int count);
 
@@ -24,8 +35,8 @@ std::vector<ContactPath> FindSiblings(const ContactGraph& graph, const ContactPa
 ///
 /// The best completion of every partial path is known beforehand (dynamic programming over the
 /// remaining stages), so each pop yields the next path in order and costs a logarithm; the paths
-/// themselves, millions of them, are never listed (Lawler 1972). Paths of equal score come in an
-/// order that depends on the graph alone.
+/// themselves, millions of them, are never listed (Lawler 1972), but for those of equal score,
+/// which are found together, up to kMostTied, and come in the order of ContactPath::rule.
 class PathSearch {
  public:
   /// @param stages  nodes in a path, 1 to 8. The graph is copied. @throws InputError unless it is
@@ -49,7 +60,7 @@ class PathSearch {
   // successors of the node before it; completed by best choices.
   struct Candidate {
     double score;
-    std::vector<int> ranks;  // one a stage
+    std::vector<int> ranks;  // one a stage, from 0 for the best successor
     std::vector<int> nodes;
     int depth;  // the first stage whose rank may still be raised
   };
@@ -57,14 +68,18 @@ class PathSearch {
 
   const std::vector<Choice>& Options(int stage, int previous) const;
   Candidate Complete(std::vector<int> ranks, int depth) const;
-  double Term(int stage, int node) const;
+  Candidate PopBest();
+  // Fills tied_ with the paths of the next score.
+  bool FindTied();
 
   ContactGraph graph_;
   int stages_;
   int num_found_ = 0;
-  std::vector<Choice> first_;                            // choices of the first stage
-  std::vector<std::vector<std::vector<Choice>>> after_;  // [stages left after it][node id]
+  double last_score_ = std::numeric_limits<double>::infinity();  // of the paths found last
+  std::vector<Choice> first_;                                    // choices of the first stage
+  std::vector<std::vector<std::vector<Choice>>> after_;          // [stages left after it][node id]
   std::vector<Candidate> heap_;
+  std::vector<ContactPath> tied_;  // found and not given yet, last first
 };
 
 }  // namespace pregrasp

@@ -101,17 +101,18 @@ std::string Explain(const GraspResult& result, const GraspWorld& world) {
                          FingerName(result.kinematics->nearest_tips[1]),
                          1e3 * result.kinematics->tip_distance);
     case GraspStatus::kNoInternalForces:
-      return fmt::format("{}: no forces within the cones cancel out; {:.2f} N are missing", fingers,
-                         result.wrench->residual);
-    case GraspStatus::kWeightNotBalanced:
-      return fmt::format("{}: no forces within the cones balance the weight; {:.2f} N are missing",
+      return fmt::format("{}: no forces within the cones cancel out; those tried miss by {:.2f} N",
                          fingers, result.wrench->residual);
+    case GraspStatus::kWeightNotBalanced:
+      return fmt::format(
+          "{}: no forces within the cones balance the weight; those tried miss by {:.2f} N",
+          fingers, result.wrench->residual);
     case GraspStatus::kTipError:
-      return fmt::format("{}: out of reach; a fingertip stays {:.1f} mm off", fingers,
-                         1e3 * result.kinematics->ik.tip_error);
+      return fmt::format("{}: no hand pose was found that reaches; a fingertip stays {:.1f} mm off",
+                         fingers, 1e3 * result.kinematics->ik.tip_error);
     case GraspStatus::kCone:
-      return fmt::format("{}: a finger would have to touch at {:.0f} degrees", fingers,
-                         RadToDeg(result.kinematics->ik.cone_angle));
+      return fmt::format("{}: in the best hand pose found a finger touches at {:.0f} degrees",
+                         fingers, RadToDeg(result.kinematics->ik.cone_angle));
     case GraspStatus::kCollision:
       return fmt::format("{}: within reach, but {}", fingers,
                          DescribeOverlap(result.kinematics->ik, world));

@@ -83,14 +83,15 @@ CompletedGrasp CompleteGrasp(const GraspWorld& world, const CompletionConfig& co
   grasp.raw = TestGrasp(world, config.grasp, grasp.projected, X_WB, rng);
   grasp.result = grasp.raw;
   if (grasp.raw.feasible()) return grasp;
-  Rng moves = rng;
+  Rng moves = rng.Split(RngStream::kGraspRefinement);
   int solves = 0;
   while (grasp.refinements < config.max_refinements && solves < config.max_solves) {
     ++grasp.refinements;
     const double share = static_cast<double>(grasp.refinements) / config.max_refinements;
     const std::vector<GraspContact> moved = MoveAlongSurface(
         world, grasp.projected, fixed, share * config.max_refinement, config.max_refinement, moves);
-    const GraspResult result = TestGrasp(world, config.grasp, moved, X_WB, moves);
+    const GraspResult result = TestGrasp(world, config.grasp, moved, X_WB,
+                                         rng.Split(RngStream::kRefinedGraspIk, grasp.refinements));
     solves += HasForces(result.status);
     if (result.feasible()) {
       grasp.result = result;

@@ -32,7 +32,7 @@ struct CompletedGrasp {
 /// Projects generated points to the object's surface and tests the grasp; where it is not feasible,
 /// draws sets with contacts moved along the surface, farther and farther, until one is (design,
 /// section 4: r_suc with refinement, r_suc_raw without). Contacts of `fixed` are kept as they are.
-/// @param rng  of stream kGrasp, keyed by the sample.
+/// @param rng  keyed by the sample, its third index zero: the refinement draws from parts of it.
 CompletedGrasp CompleteGrasp(const GraspWorld& world, const CompletionConfig& config,
                              const GraspPoints& generated, const std::vector<GraspContact>& fixed,
                              const std::vector<RigidTransform>& X_WB, const Rng& rng);

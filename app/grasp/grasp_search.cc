@@ -61,7 +61,7 @@ class Searcher {
   }
 
   SolvedSet Solve(int index, const std::vector<GraspContact>& contacts) const {
-    const Rng rng(seed_, RngStream::kIk, kIteration, index);
+    const Rng rng(seed_, RngStream::kSearchedGraspIk, index);
     const KinematicResult plain = CalcKinematicFeasibility(world_, reach_, contacts, X_WB_, rng);
     if (!plain.feasible()) return {};
     const HandConfiguration start = plain.ik.configuration();
@@ -69,10 +69,8 @@ class Searcher {
   }
 
  private:
-  static constexpr std::uint32_t kIteration = 1;  // 0 measures the hand's reach
-
   DrawnSet DrawOne(int index) const {
-    Rng rng(seed_, RngStream::kGrasp, kIteration, index);
+    Rng rng(seed_, RngStream::kSearchedContacts, index);
     std::optional<std::vector<GraspContact>> contacts = sampler_.Sample(fixed_, rng);
     if (!contacts) return {};
     const WrenchStatus status = CalcWrenchStatus(world_.ToWrenchContacts(*contacts), wrench_);

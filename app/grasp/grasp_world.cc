@@ -17,7 +17,7 @@ TipReach MeasureTipReach(const HandModel& hand) {
   constexpr int kPairs = kNumFingers * (kNumFingers - 1) / 2;
   std::array<std::vector<double>, kPairs> distances;
   for (std::vector<double>& pair : distances) pair.reserve(kReachPostures);
-  Rng rng(0, RngStream::kGrasp);
+  Rng rng(0, RngStream::kTipReach);
   HandPose pose;
   for (int sample = 0; sample < kReachPostures; ++sample) {
     HandJoints q;

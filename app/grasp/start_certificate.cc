@@ -16,7 +16,7 @@ std::optional<GraspResult> FindFeasible(const GraspWorld& world,
   const int count = static_cast<int>(generated.size());
   std::vector<std::optional<GraspResult>> results(count);
   pool.ParallelFor(count, [&](int i, int) {
-    const Rng rng(config.seed, RngStream::kCertificate, 0, i);
+    const Rng rng(config.seed, RngStream::kProposedGraspIk, i);
     GraspResult result = TestGrasp(world, config.search.grasp, generated[i], X_WB, rng);
     if (result.feasible()) results[i] = std::move(result);
   });

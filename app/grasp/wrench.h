@@ -48,11 +48,13 @@ struct WrenchResult {
   /// The admissible forces on the object [N] (#contacts x 3) that balance the weight with the least
   /// effort (smallest sum of squares: unique, and continuous in the contacts). They hold the object
   /// and no more; ask with a smaller mu for forces that keep a reserve against slipping. If not
-  /// feasible: the admissible forces whose net wrench, in the condition that fails, comes nearest.
+  /// feasible: admissible forces on whose net wrench, in the condition that fails, the proof ended;
+  /// others may come nearer to balance.
   MatrixX3 forces;
   /// The smallest normal component of `forces` [N].
   double min_normal = 0.0;
-  /// What is missing to balance [N, torque divided by torque_scale]: norm of the net wrench.
+  /// The norm of the net wrench of `forces` [N, torque divided by torque_scale]. If not feasible,
+  /// at least as much as is missing to balance.
   double residual = 0.0;
   /// If not feasible, the proof: a unit wrench-space direction (force, then scaled torque) along
   /// which the net wrench of all admissible forces, weight included, is above 0. Else zero.

@@ -15,6 +15,18 @@ NodeFacts MakeNodeFacts(const ContactNode& node) {
   return {node.id, node.thumb, node.index, node.s_c, node.s_n, node.rank_c, node.rank_n};
 }
 
+const char* TieRuleName(TieRule rule) {
+  switch (rule) {
+    case TieRule::kNone:
+      return "";
+    case TieRule::kScores:
+      return "scores";
+    case TieRule::kNumber:
+      return "number";
+  }
+  return "";
+}
+
 void BuildMesh(Application& a) {
   a.next.planner = a.job.GetPlanner(a.next.start, a.next.config);
   const PlannerConfig& config = a.next.config;
@@ -83,6 +95,8 @@ void Prune(Application& a) {
   facts.num_kept_each = any.num_kept_each;
   facts.threshold_c = any.threshold_c;
   facts.threshold_n = any.threshold_n;
+  facts.num_tied_c = any.num_tied_c;
+  facts.num_tied_n = any.num_tied_n;
   facts.num_edges = graph->num_edges();
   for (const ContactNode& node : graph->nodes()) {
     if (node.initial) facts.initial.push_back(node.id);
@@ -111,6 +125,8 @@ void TakePath(Application& a) {
   facts.score = path->score;
   facts.terms = path->terms;
   facts.num_paths = a.next.paths->Count(a.next.config.stages);
+  facts.num_tied = path->num_tied;
+  facts.tie_rule = TieRuleName(path->rule);
   for (const ContactPath& sibling : FindSiblings(*a.next.graph, *path, kSiblings)) {
     facts.siblings.push_back({sibling.nodes, sibling.score});
   }

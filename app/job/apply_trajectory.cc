@@ -69,7 +69,7 @@ void Prepare(Application& a) {
 
 void Iterate(Application& a) {
   Prepare(a);
-  Require(!a.next.optimization->converged || a.command.options.contains("settings"),
+  Require(!a.next.optimization->ended() || a.command.options.contains("settings"),
           "an optimisation that goes on", "one that has ended");
   const Mppi& mppi = *a.next.mppi;
   MppiState state = *a.next.optimization;
@@ -84,8 +84,8 @@ void Iterate(Application& a) {
   facts.best_cost = state.best_cost;
   facts.mean_cost = state.mean_history.back();
   facts.best = MakeCostFacts(state.best);
-  facts.converged = state.converged;
-  if (state.converged) facts.end = state.iteration >= facts.limit ? "limit" : "patience";
+  facts.converged = state.converged();
+  facts.end = MppiEndName(state.end);
   for (const MppiSample& sample : state.samples) {
     facts.rollouts.push_back(MakeRolloutFacts(mppi, sample));
   }

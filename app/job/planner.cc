@@ -33,7 +33,7 @@ std::vector<Placement> FindProbes(const Shape& object, const ContactMeshConfig& 
   PlacementSearchConfig config;
   config.spacing = 0.02;
   return FindPlacements(BuildContactMesh(object, mesh_config), shape, *scorer.Free(), {}, kProbes,
-                        config, Rng(seed, RngStream::kGraph, 1));
+                        config, Rng(seed, RngStream::kScoreProbes));
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ Planner::Planner(std::shared_ptr<const World> world, WorldState start, const Pla
   generator_ = std::make_shared<const GraspGenerator>(
       GraspGenerator::Load(weights / "generator.safetensors"));
   PointCloud cloud = SamplePointCloud(scene().object().shape, config.cloud_points,
-                                      Rng(seed, RngStream::kPointCloud));
+                                      Rng(seed, RngStream::kObjectCloud));
   generator_structure_ = std::make_shared<const CloudStructure>(
       generator_->BuildStructure(cloud.P, scene().object().X_WB.linear()));
   const auto scorer =
@@ -130,8 +130,7 @@ Mppi Planner::MakeMppi(const ContactGraph& graph, const ContactPath& path,
   problem.scorer = scorer_.get();
   problem.start = start_;
   problem.path = path;
-  // Each path draws its own numbers: the seed is the run's in the low half, the rank in the high.
-  problem.seed = seed_ + (static_cast<std::uint64_t>(path.rank) << 32);
+  problem.seed = seed_;
   return {problem, config};
 }
 
@@ -155,7 +154,7 @@ ReleaseResult Planner::Release(const ContactGraph& graph, const Certificate& cer
   }
   const auto scorer = scorer_->At(world_->GetPoses(end));
   result.conditions = FindPlacements(graph.mesh(), *shape_, *scorer, fixed, config_.grasp_samples,
-                                     config_.placements, Rng(seed_, RngStream::kGrasp));
+                                     config_.placements, Rng(seed_, RngStream::kReleasePlacements));
   return result;
 }
 
@@ -192,16 +191,14 @@ CompletedGrasp Planner::CompleteGrasp(const EncodedState& encoded,
                                       int sample) const {
   const PlanningContacts conditions = MakePlanningContacts(
       release.conditions[sample % release.conditions.size()], &X_WB, *environment_);
-  const Rng latent(seed_, RngStream::kGrasp, static_cast<std::uint32_t>(path_rank),
-                   static_cast<std::uint32_t>(2 * sample));
+  const Rng latent(seed_, RngStream::kGraspLatent, path_rank, sample);
   const GraspPoints points =
       generator_->Sample(*generator_structure_, encoded, conditions, 1, latent).front();
-  const Rng refinement(seed_, RngStream::kGrasp, static_cast<std::uint32_t>(path_rank),
-                       static_cast<std::uint32_t>(2 * sample + 1));
+  const Rng completion(seed_, RngStream::kGraspCompletion, path_rank, sample);
   const std::vector<GraspContact> fixed =
       release.stays ? std::vector<GraspContact>{} : release.pressing;
   return pregrasp::CompleteGrasp(*grasp_world_, config_.completion, points, fixed, X_WB,
-                                 refinement);
+                                 completion);
 }
 
 LiftResult Planner::Lift(const Certificate& certificate, const GraspResult& grasp) const {

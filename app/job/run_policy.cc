@@ -85,13 +85,13 @@ class Runner {
 
   const Node& Certify(const Node& graph, int rank, const std::string& name) {
     const Node* node = &timeline_.Do(graph, Verb::kPath, {{"rank", rank}});
-    bool converged = false;
-    while (!converged) {
+    bool ended = false;
+    while (!ended) {
       const auto* last = std::get_if<IterationFacts>(&node->facts.details);
       Report(name + ", trajectory", last == nullptr ? 0 : last->iteration,
              last == nullptr ? 1 : last->limit);
       node = &timeline_.Do(*node, Verb::kIterate);
-      converged = std::get<IterationFacts>(node->facts.details).converged;
+      ended = !std::get<IterationFacts>(node->facts.details).end.empty();
     }
     return timeline_.Do(*node, Verb::kCertify);
   }

@@ -219,6 +219,7 @@ struct PruneFacts {
   double top_percent = 0.0;  ///< the paper's M
   int num_kept_each = 0;     ///< how many nodes the top M percent are
   double threshold_c = 0.0, threshold_n = 0.0;
+  int num_tied_c = 0, num_tied_n = 0;  ///< nodes that score exactly that
   int num_edges = 0;
   std::vector<int> initial, kept;  ///< ids of nodes
 
@@ -231,6 +232,8 @@ struct PruneFacts {
     visit("num_kept_each", self.num_kept_each);
     visit("threshold_c", self.threshold_c);
     visit("threshold_n", self.threshold_n);
+    visit("num_tied_c", self.num_tied_c);
+    visit("num_tied_n", self.num_tied_n);
     visit("num_edges", self.num_edges);
     visit("initial", self.initial);
     visit("kept", self.kept);
@@ -243,6 +246,8 @@ struct PathFacts {
   double score = 0.0;
   std::vector<double> terms;  ///< its summands
   double num_paths = 0.0;     ///< in all
+  int num_tied = 1;           ///< with exactly this score, as ContactPath
+  std::string tie_rule;       ///< what orders it among these: "", "scores" or "number"
   /// Paths that differ in the last node only and come after this one.
   struct Sibling {
     std::vector<int> nodes;
@@ -263,6 +268,8 @@ struct PathFacts {
     visit("score", self.score);
     visit("terms", self.terms);
     visit("num_paths", self.num_paths);
+    visit("num_tied", self.num_tied);
+    visit("tie_rule", self.tie_rule);
     visit("siblings", self.siblings);
   }
 };
@@ -338,8 +345,8 @@ struct IterationFacts {
   double sigma = 0.0;  ///< of this iteration's noise
   double best_cost = 0.0, mean_cost = 0.0;
   CostFacts best;  ///< of all iterations
-  bool converged = false;
-  std::string end;  ///< why it ended: "", "patience" or "limit"
+  bool converged = false;  ///< it ended by patience
+  std::string end;         ///< why it ended: "", "patience" or "limit"
   std::vector<RolloutFacts> rollouts;
 
   template <typename Self, typename Visit>

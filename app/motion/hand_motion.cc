@@ -110,8 +110,7 @@ MotionFrame HandMotion::SolveFrame(int frame, const HandConfiguration& warm_star
     IkConfig ik = Loosen(config_.ik, rung);
     ik.max_starts = starts;
     ik.warm_starts = starts;
-    const Rng rng(seed_, RngStream::kIk, static_cast<std::uint32_t>(frame),
-                  static_cast<std::uint32_t>(rung));
+    const Rng rng(seed_, RngStream::kMotionIk, frame, static_cast<int>(rung));
     const IkResult result = solver_.Solve(ik, problem, rng);
     RecordResult(result, rung, &solved);
     if (result.solved()) return solved;

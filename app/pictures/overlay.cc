@@ -202,7 +202,7 @@ bool IsKeyStep(const StepFacts& step, const FactsSource& steps) {
       return std::get<PruneFacts>(step.details).complete;
     case Verb::kIterate: {
       const auto& facts = std::get<IterationFacts>(step.details);
-      return facts.iteration == 1 || facts.iteration % kEvery == 0 || facts.converged;
+      return facts.iteration == 1 || facts.iteration % kEvery == 0 || !facts.end.empty();
     }
     case Verb::kGrasp:
       return IsFirstOfItsKind(step, std::get<GraspFacts>(step.details), steps);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/graph/contact_path.h"
 #include "app/pictures/words.h"
 
 namespace pregrasp {
@@ -12,6 +13,15 @@ using Lines = std::vector<std::string>;
 template <typename Node>
 std::string NodeText(const Node& node) {
   return fmt::format("node {} (thumb {}, index {})", node.id, node.thumb, node.index);
+}
+
+// What decided at a cut through nodes of equal score; `other` is what was looked at then.
+std::string TieText(int num_tied, TieRule rule, const char* other) {
+  if (rule == TieRule::kNone) return "";
+  const std::string tied = fmt::format("; {} states score exactly that, of which ", num_tied);
+  return rule == TieRule::kScores
+             ? tied + fmt::format("those with the higher score {} stay", other)
+             : tied + "some, alike in both scores, stay for their lower numbers alone";
 }
 
 std::string Join(const std::vector<std::string>& texts, const char* separator) {
@@ -57,12 +67,14 @@ Lines Describe(const Scene& /*scene*/, const PruneFacts& facts) {
     lines = {fmt::format("The {:g} % with the best score among the surroundings stay: with one of "
                          "these a path may begin.",
                          facts.top_percent),
-             fmt::format("threshold\t{:.3f}", facts.threshold_c)};
+             fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_c,
+                         facts.num_tied_c)};
   } else if (facts.cut == "free") {
     lines = {fmt::format("So do the {:g} % with the best score without surroundings: they may come "
                          "later, when the object has moved.",
                          facts.top_percent),
-             fmt::format("threshold\t{:.3f}", facts.threshold_n)};
+             fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_n,
+                         facts.num_tied_n)};
   } else {
     lines = {
         "States that share a triangle are connected: one finger stays while the other "
@@ -82,6 +94,13 @@ Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
                              "the sum of its scores.",
                              facts.rank, facts.nodes.size(), facts.rank),
                  fmt::format("score\t{:.3f}", facts.score)};
+  if (facts.num_tied > 1) {
+    lines[0] += fmt::format(" {}{} paths have exactly this score; {}.", facts.num_tied,
+                            facts.num_tied == kMostTied ? " or more" : "",
+                            facts.tie_rule == "scores"
+                                ? "the ranks of their states decide among them"
+                                : "the order of some is that of their states' numbers");
+  }
   for (std::size_t i = 0; i < facts.nodes.size(); ++i) {
     lines.push_back(fmt::format("stage {}\t{:.3f}, thumb {}, index {}", i + 1, facts.terms[i],
                                 facts.nodes[i].thumb, facts.nodes[i].index));
@@ -94,7 +113,7 @@ Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
 }
 
 std::string EndOfOptimisation(const IterationFacts& facts) {
-  if (!facts.converged) return "";
+  if (facts.end.empty()) return "";
   return facts.end == "limit" ? fmt::format(" The limit of {} iterations ends it.", facts.limit)
                               : " The best cost has stopped falling.";
 }
@@ -207,17 +226,22 @@ std::string DescribeReason(const NodeReason& reason) {
   const ContactNode& node = reason.node;
   using Verdict = NodeReason::Verdict;
   if (reason.verdict == Verdict::kNotScored) return NodeText(node) + " has no score yet";
-  const auto by = [&](const char* where, double score, int rank, double threshold) {
-    return fmt::format("{} it scores {:.3f}, rank {} of {} (the best {} stay, down to {:.3f})",
-                       where, score, rank, reason.num_nodes, reason.num_kept_each, threshold);
+  const auto by = [&](const char* where, double score, int rank, double threshold,
+                      const std::string& tie) {
+    return fmt::format("{} it scores {:.3f}, rank {} of {} (the best {} stay, down to {:.3f}{})",
+                       where, score, rank, reason.num_nodes, reason.num_kept_each, threshold, tie);
   };
   std::string text = NodeText(node);
   text += reason.verdict == Verdict::kPruned          ? " is pruned: "
+          : reason.verdict == Verdict::kScored        ? " is scored and not decided on: "
           : reason.verdict == Verdict::kKeptByContext ? " is kept for its score here: "
           : reason.verdict == Verdict::kKeptByFree    ? " is kept for its score alone: "
                                                       : " is kept for both its scores: ";
-  text += by("here", node.s_c, node.rank_c, reason.threshold_c) + "; ";
-  text += by("without surroundings", node.s_n, node.rank_n, reason.threshold_n);
+  text += by("here", node.s_c, node.rank_c, reason.threshold_c,
+             TieText(reason.num_tied_c, reason.rule_c, "without surroundings")) +
+          "; ";
+  text += by("without surroundings", node.s_n, node.rank_n, reason.threshold_n,
+             TieText(reason.num_tied_n, reason.rule_n, "here"));
   if (node.occluded > 0.0) {
     text += fmt::format("; no fingertip can be at {:.0f} % of its contacts", 100 * node.occluded);
   }

@@ -86,7 +86,7 @@ GeneratorTask::GeneratorTask(const std::shared_ptr<const Dataset>& dataset,
       validation_families_(validation_families),
       data_(PrepareTrainingData(dataset, config.encoder.levels, validation_families, HasGrasps)),
       order_(static_cast<std::int64_t>(data_.training.size()), config.seed) {
-  model_ = std::make_shared<Model>(config_, Rng(config.seed, RngStream::kTraining, 0, 0));
+  model_ = std::make_shared<Model>(config_, Rng(config.seed, RngStream::kInitialWeights));
   module_ = model_;
 }
 
@@ -128,7 +128,7 @@ std::array<GeneratorTask::Case, 3> GeneratorTask::BuildCases(
 Tensor GeneratorTask::CalcLoss(std::int64_t step) {
   std::vector<TrainingState> states;
   std::vector<std::vector<const GraspRecord*>> grasps;
-  Rng rng(config_.seed, RngStream::kTraining, static_cast<std::uint32_t>(step), 2);
+  Rng rng(config_.seed, RngStream::kBatchNoise, step);
   for (const std::int64_t number : order_.Draw(step, config_.contexts_per_step)) {
     const TrainingContext& context = data_.training[number];
     const double heading = rng.Uniform(0.0, 2.0 * kPi);
@@ -167,7 +167,7 @@ Json GeneratorTask::Evaluate() {
   std::array<double, 3> reconstruction{}, nearest{}, spread{};
   std::array<double, 3> count{};
   const double unit = 1e3 / config_.contacts.position_scale;
-  Rng rng(config_.seed, RngStream::kTraining, 0, 3);
+  Rng rng(config_.seed, RngStream::kEvaluationNoise);
   for (std::size_t first = 0; first < data_.validation.size(); first += kBatch) {
     std::vector<TrainingState> states;
     std::vector<std::vector<const GraspRecord*>> grasps;

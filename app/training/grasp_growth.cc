@@ -56,7 +56,7 @@ GrowthResult GrowGrasps(const GraspWorld& world, const GrowthConfig& config,
     result.grasps.push_back({grasp.contacts, grasp.kinematics->ik.configuration(), true});
   }
   if (result.grasps.empty()) return result;
-  Rng rng(seed, RngStream::kDataset, 0, 1);
+  Rng rng(seed, RngStream::kGrowthMoves);
   while (result.tests < config.max_tests &&
          static_cast<int>(result.grasps.size()) < config.max_grasps) {
     ThrowIfInterrupted();
@@ -65,7 +65,7 @@ GrowthResult GrowGrasps(const GraspWorld& world, const GrowthConfig& config,
     const auto contacts = Perturb(world, parent.contacts, config.step, rng);
     ++result.tests;
     if (!IsNew(contacts, result.grasps, config.spacing)) continue;
-    const Rng ik_rng(seed, RngStream::kIk, 2, static_cast<std::uint32_t>(result.tests));
+    const Rng ik_rng(seed, RngStream::kGrownGraspIk, result.tests);
     const GraspResult test =
         TestContacts(world, config.search.grasp, contacts, X_WB, ik_rng, &parent.hand);
     if (!test.feasible()) continue;

@@ -123,10 +123,10 @@ LabelRecord CalcLabel(const GraspWorld& world, const GraspGenerator& generator,
     }
     const EncodedState encoded = generator.Encode(
         structure, MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity));
-    const auto grasps =
-        generator.Sample(structure, encoded, seen, config.tries, Rng(seed, RngStream::kGrasp));
+    const auto grasps = generator.Sample(structure, encoded, seen, config.tries,
+                                         Rng(seed, RngStream::kLabelLatent));
     for (int i = 0; i < config.tries; ++i) {
-      const Rng sample_rng(seed, RngStream::kIk, 0, static_cast<std::uint32_t>(i));
+      const Rng sample_rng(seed, RngStream::kLabelCompletion, i);
       const CompletedGrasp grasp =
           CompleteGrasp(world, config.completion, grasps[i], fixed, X_WB, sample_rng);
       if (!grasp.feasible()) continue;

@@ -13,15 +13,6 @@
 namespace pregrasp {
 namespace {
 
-// Purposes of an item's random streams; scenes and labels are numbered from their base.
-enum Purpose : std::uint32_t { kCloud = 1, kObject = 500, kScene = 1000, kGrowth = 2000 };
-constexpr std::uint32_t kLabel = 100'000;
-constexpr std::uint32_t kLabelsPerScene = 1000;
-
-Rng ItemRng(const ItemConfig& config, std::int64_t index, std::uint32_t purpose) {
-  return Rng(config.seed, RngStream::kDataset, static_cast<std::uint32_t>(index), purpose);
-}
-
 ContextRecord MakeContext(const GraspWorld& world, const PointCloud& cloud,
                           const std::vector<RigidTransform>& X_WB) {
   const ObjectState state =
@@ -52,7 +43,7 @@ GraspRecord MakeRecord(const GraspWorld& world, const GrownGrasp& grasp, int con
 bool Resembles(const TrainingObject& object, const std::vector<ExcludedObject>& excluded) {
   if (excluded.empty()) return false;
   constexpr int kCompared = 400;
-  const MatrixX3 P = SamplePointCloud(object.shape, kCompared, Rng(0, RngStream::kPointCloud)).P;
+  const MatrixX3 P = SamplePointCloud(object.shape, kCompared, Rng(0, RngStream::kComparedCloud)).P;
   return std::any_of(excluded.begin(), excluded.end(), [&](const ExcludedObject& other) {
     return CalcAlignedChamfer(P, other.P) < kLeastUnlikeness;
   });
@@ -64,7 +55,7 @@ PointCloud CloudOf(const DatasetItem& item) { return {item.P_O, item.N_O}; }
 
 std::string ItemConfig::ToJson() const {
   nlohmann::ordered_json json;
-  json["version"] = 1;  // raise with any change that changes items
+  json["version"] = 2;  // raise with any change that changes items
   json["seed"] = seed;
   json["scenes"] = scenes;
   json["points"] = points;
@@ -80,9 +71,10 @@ std::string ItemConfig::ToJson() const {
 SceneObject MakeItemObject(const ItemConfig& config, std::int64_t index) {
   const auto& families = ObjectFamilies();
   const std::string& family = families[index % families.size()];
-  constexpr std::uint32_t kAttempts = 200;
-  for (std::uint32_t attempt = 0; attempt < kAttempts; ++attempt) {
-    TrainingObject object = SampleObject(family, ItemRng(config, index, kObject + attempt));
+  constexpr int kAttempts = 200;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    TrainingObject object =
+        SampleObject(family, Rng(config.seed, RngStream::kItemObject, index, attempt));
     if (!Resembles(object, config.excluded)) return MakeSceneObject(std::move(object));
   }
   throw InputError("", "excluded", "objects that leave room for family " + family, "none");
@@ -90,7 +82,7 @@ SceneObject MakeItemObject(const ItemConfig& config, std::int64_t index) {
 
 TrainingScene MakeItemScene(const ItemConfig& config, const SceneObject& object, std::int64_t index,
                             int scene) {
-  return SampleTrainingScene(object, ItemRng(config, index, kScene + scene));
+  return SampleTrainingScene(object, Rng(config.seed, RngStream::kItemScene, index, scene));
 }
 
 GraspWorld MakeTrainingWorld(const Scene& scene) {
@@ -102,8 +94,8 @@ GraspWorld MakeTrainingWorld(const Scene& scene) {
 
 DatasetItem MakeGraspItem(const ItemConfig& config, std::int64_t index, ThreadPool& pool) {
   const SceneObject object = MakeItemObject(config, index);
-  const PointCloud cloud =
-      SamplePointCloud(object.object.shape, config.points, ItemRng(config, index, kCloud));
+  const PointCloud cloud = SamplePointCloud(object.object.shape, config.points,
+                                            Rng(config.seed, RngStream::kItemCloud, index));
   DatasetItem item;
   item.index = index;
   item.family = object.object.family;
@@ -115,7 +107,7 @@ DatasetItem MakeGraspItem(const ItemConfig& config, std::int64_t index, ThreadPo
   for (int s = 0; s < config.scenes; ++s) {
     const TrainingScene scene = MakeItemScene(config, object, index, s);
     const GraspWorld world = MakeTrainingWorld(scene.scene);
-    Rng rng = ItemRng(config, index, kGrowth + s);
+    Rng rng(config.seed, RngStream::kItemGrowth, index, s);
     const double moved = kReliefs[1 + rng.UniformInt(kNumReliefs - 1)];
     const bool free = scene.scene.bodies.size() == 1;
     for (const double relief : {0.0, moved}) {
@@ -154,8 +146,7 @@ SceneLabeler::SceneLabeler(const ItemConfig& config, const DatasetItem& item,
 }
 
 LabelRecord SceneLabeler::MakeLabel(int number, std::optional<LabelExample>* example) const {
-  const std::uint32_t base = kLabel + kLabelsPerScene * static_cast<std::uint32_t>(scene_number_);
-  Rng rng = ItemRng(config_, index_, base + number);
+  Rng rng(config_.seed, RngStream::kItemLabel, index_, scene_number_, number);
   const PlanningContacts contacts =
       SampleLabelContacts(world_, sampler_, grasps_, number % 3, config_.labels, X_WB_, rng);
   LabelRecord label =

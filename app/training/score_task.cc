@@ -69,7 +69,7 @@ ScoreTask::ScoreTask(const std::shared_ptr<const Dataset>& dataset,
       order_(static_cast<std::int64_t>(data_.training.size()), config.seed) {
   config_.encoder = EncoderOf(config);
   model_ = std::make_shared<Model>(config_.encoder, config_,
-                                   Rng(config.seed, RngStream::kTraining, 0, 0));
+                                   Rng(config.seed, RngStream::kInitialWeights));
   module_ = model_;
 }
 
@@ -91,7 +91,7 @@ torch::Tensor ScoreTask::CalcLoss(std::int64_t step) {
   std::vector<TrainingState> states;
   std::vector<std::vector<const LabelRecord*>> labels;
   std::vector<float> values;
-  Rng rng(config_.seed, RngStream::kTraining, static_cast<std::uint32_t>(step), 2);
+  Rng rng(config_.seed, RngStream::kBatchNoise, step);
   for (const std::int64_t number : order_.Draw(step, config_.contexts_per_step)) {
     const TrainingContext& context = data_.training[number];
     const double heading = rng.Uniform(0.0, 2.0 * kPi);

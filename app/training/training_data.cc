@@ -52,7 +52,7 @@ std::vector<std::int64_t> BatchOrder::Draw(std::int64_t step, int batch) {
       round_ = round;
       order_.resize(count_);
       std::iota(order_.begin(), order_.end(), 0);
-      Rng rng(seed_, RngStream::kTraining, static_cast<std::uint32_t>(round), 1);
+      Rng rng(seed_, RngStream::kBatchOrder, round);
       for (std::int64_t k = count_ - 1; k > 0; --k) {
         std::swap(order_[k], order_[rng.UniformInt(static_cast<std::uint32_t>(k + 1))]);
       }

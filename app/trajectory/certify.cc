@@ -50,6 +50,7 @@ Certificate CertifyPlan(const World& world, const World& half_world,
   PREGRASP_CHECK(std::abs(half_world.config().dt * 2.0 - world.config().dt) < 1e-12);
   timing.hold_seconds = config.hold_seconds;
   Certificate result;
+  result.hold_seconds = config.hold_seconds;
   result.full =
       SimulatePlan(world, environment, start, plan, timing, Stepper::kSimbody, &result.trace);
   result.half = SimulatePlan(half_world, environment, start, plan, timing, Stepper::kSimbody);

@@ -27,7 +27,8 @@ struct Certificate {
   bool certified = false;
   std::vector<CertifyReason> reasons;  ///< empty if certified
   PlanOutcome full, half;
-  double hold_shift = 0.0;      ///< [m], at the full step
+  double hold_seconds = 0.0;    ///< how long the last targets were kept [s]
+  double hold_shift = 0.0;      ///< the object's way in that time [m], at the full step
   double hold_turn_deg = 0.0;   ///< [degrees]
   double step_shift = 0.0;      ///< distance between the two final positions [m]
   double step_turn_deg = 0.0;   ///< and orientations [degrees]

@@ -67,8 +67,7 @@ std::vector<std::vector<double>> Mppi::SampleActions(const MppiState& state) con
       actions[i] = state.best_action;
       continue;
     }
-    Rng rng(problem_.seed, RngStream::kMppi, static_cast<std::uint32_t>(state.iteration),
-            static_cast<std::uint32_t>(i));
+    Rng rng(problem_.seed, RngStream::kMppiNoise, problem_.path.rank, state.iteration, i);
     for (double& u : actions[i]) u += sigma * rng.Normal();
   }
   return actions;
@@ -122,7 +121,14 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
   const bool stalled =
       state.iteration > patience &&
       state.best_history[state.iteration - 1 - patience] - state.best_cost < config_.progress;
-  state.converged = stalled || state.iteration >= config_.iterations;
+  state.end = stalled                                 ? MppiEnd::kPatience
+              : state.iteration >= config_.iterations ? MppiEnd::kLimit
+                                                      : MppiEnd::kNone;
+}
+
+const char* MppiEndName(MppiEnd end) {
+  constexpr const char* kNames[] = {"", "patience", "limit"};
+  return kNames[static_cast<int>(end)];
 }
 
 void Mppi::MoveMean(MppiState& state) const {

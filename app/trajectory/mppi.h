@@ -19,7 +19,7 @@ struct MppiConfig {
                         ///< squashing by tanh reaches the ends of each range
   double final_sigma = 0.3;  ///< and in the last; geometric in between
   double temperature = 0.3;  ///< lambda over the standard deviation of the costs
-  int patience = 7;          ///< iterations without progress after which it has converged; with 4,
+  int patience = 7;          ///< iterations without progress after which it has ended; with 4,
                              ///< half of the paths ended before they had found anything
   double progress = 0.01;    ///< what counts as progress: the best cost falls by this much
   double max_travel = 0.03;  ///< range of a target's own movement in a knot, each axis [m]
@@ -37,6 +37,16 @@ struct MppiSample {
   RigidTransform X_WO_end = RigidTransform::Identity();
 };
 
+/// Why an optimisation has ended.
+enum class MppiEnd {
+  kNone,      ///< it has not
+  kPatience,  ///< the best cost has not fallen by `progress` in the last `patience` iterations
+  kLimit,     ///< `iterations` are done; whether the cost would have fallen further is open
+};
+
+/// "", "patience", "limit": the word used in logs.
+const char* MppiEndName(MppiEnd end);
+
 /// Everything that the next iteration depends on, and what the last one did: a copyable value. To
 /// go back, keep a copy; to fork, step a copy with another Mppi.
 struct MppiState {
@@ -48,7 +58,9 @@ struct MppiState {
   std::vector<double> best_history;  ///< best_cost after each iteration
   std::vector<double> mean_history;  ///< mean cost of the samples of each iteration
   std::vector<MppiSample> samples;   ///< of the last iteration, in index order
-  bool converged = false;
+  MppiEnd end = MppiEnd::kNone;
+  bool ended() const { return end != MppiEnd::kNone; }
+  bool converged() const { return end == MppiEnd::kPatience; }
 };
 
 /// What MPPI works on; all referenced objects outlive it.
@@ -60,7 +72,7 @@ struct MppiProblem {
   const StateScorer* scorer = nullptr;
   WorldState start;
   ContactPath path;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  ///< of the run; path.rank and the iteration key the noise too
 };
 
 class Mppi {

@@ -363,20 +363,20 @@ function Graph:shot(options) end
 ---@field index integer triangle
 ---@field s_c number score among the surroundings, mean of its placements, 0 to 1
 ---@field s_n number score without surroundings
----@field rank_c integer 1 is the best by s_c
----@field rank_n integer the same by s_n
+---@field rank_c integer 1 is the best by s_c; of equal ones by s_n, then by id
+---@field rank_n integer 1 is the best by s_n; of equal ones by s_c, then by id
 ---@field occluded number share of its contacts where no fingertip can be
 ---@field initial boolean may begin a path
 ---@field kept boolean
 
 ---@class Reason
 ---@field text string the sentence
----@field verdict "not_scored"|"kept_by_context"|"kept_by_free"|"kept_by_both"|"pruned"
+---@field verdict "not_scored"|"scored"|"kept_by_context"|"kept_by_free"|"kept_by_both"|"pruned"
 ---@field kept boolean
 ---@field id integer
 ---@field node ContactState
----@field threshold_c number the lowest s_c that was kept
----@field threshold_n number the lowest s_n that was kept
+---@field threshold_c number the lowest s_c among the top percent by it
+---@field threshold_n number the lowest s_n among the top percent by it
 ---@field num_nodes integer
 ---@field num_kept_each integer how many the top percent are
 
@@ -415,7 +415,7 @@ function Path:optimize(options) end
 ---@field sigma? number standard deviation of the noise in the first iteration, 1.2
 ---@field final_sigma? number and in the last, 0.3
 ---@field temperature? number lambda over the standard deviation of the costs, 0.3
----@field patience? integer iterations without progress after which it has converged, 7
+---@field patience? integer iterations without progress after which it has ended, 7
 ---@field progress? number what counts as progress, 0.01
 ---@field max_travel? number of a target in a knot, each axis [m], 0.03
 ---@field stage_seconds? number of one contact stage, 0.8
@@ -444,7 +444,7 @@ function Path:shot(options) end
 ---@field best_cost number? of all iterations; nil before the first
 ---@field mean_cost number? of the last iteration's rollouts
 ---@field best CostTerms of the best plan so far
----@field converged boolean
+---@field converged boolean it ended for want of progress, not at the limit of iterations
 ---@field best_history number[] best_cost after each iteration
 ---@field mean_history number[]
 ---@field path_rank integer
@@ -452,7 +452,7 @@ function Path:shot(options) end
 local Optimizer = {}
 
 ---One iteration.
----@return boolean # false, and nothing done, when it has converged
+---@return boolean # false, and nothing done, when it has ended
 function Optimizer:step() end
 
 ---Takes iterations back.
@@ -586,7 +586,7 @@ function Grasps:best() end
 
 ---@class Grasp
 ---@field feasible boolean
----@field reason string "feasible", or the first demand that cannot be met
+---@field reason string "feasible", or the first demand that is not met
 ---@field raw_reason string the same without refinement
 ---@field text string a sentence: which fingers, and what stands in the way
 ---@field sample integer
@@ -822,9 +822,9 @@ function pregrasp.wrench(options) end
 ---@field closed boolean force closure: margin > 0
 ---@field margin number Ferrari and Canny's epsilon, signed
 ---@field min_normal number smallest normal part of the forces [N]
----@field forces Vector3[] on the object, of least effort [N]
+---@field forces Vector3[] on the object [N]: of least effort, or, if not feasible, those on which the proof ended
 ---@field status string "feasible", or the condition that fails
----@field residual number net wrench that is left, 0 if feasible
+---@field residual number net wrench that these leave [N, torques over torque_scale]: rounding if feasible, else at least what is missing
 
 ---A hand pose whose fingertips touch the contacts, within cones of 60 degrees, without overlap with
 ---the scene's bodies at the start, the object and the hand itself; certified by FCL.
@@ -850,7 +850,7 @@ function pregrasp.ik(options) end
 ---@field n Vector3 the surface's normal there, into the object; with a scene either side will do
 
 ---@class IkResult
----@field status string "solved", or what cannot be met
+---@field status string "solved", or what is not met
 ---@field solved boolean
 ---@field X_WH Transform of the palm
 ---@field q HandJoints

@@ -84,9 +84,9 @@ void Ik(benchmark::State& state, int fingers, bool clutter, const IkConfig& conf
   for (auto _ : state) {
     for (std::size_t i = 0; i < instances.size(); ++i) {
       const double start = ThreadCpuMilliseconds();
-      const IkResult result =
-          instances[i].solver->Solve(config, instances[i].solvable.problem,
-                                     Rng(1, RngStream::kIk, repeat, static_cast<std::uint32_t>(i)));
+      const IkResult result = instances[i].solver->Solve(
+          config, instances[i].solvable.problem,
+          Rng(1, RngStream::kTest, repeat, static_cast<std::uint32_t>(i)));
       tally.Add(ThreadCpuMilliseconds() - start, result.solved());
       by_slsqp += result.solved() && result.method == IkMethod::kSlsqp;
       exact += result.solved() && result.tip_error <= config.tip_target;
@@ -115,7 +115,7 @@ void IkForeign(benchmark::State& state, int fingers, const IkConfig& config) {
       problem.contacts = instances[other].solvable.problem.contacts;
       const double start = ThreadCpuMilliseconds();
       const IkResult result = instances[i].solver->Solve(
-          config, problem, Rng(1, RngStream::kIk, 0, static_cast<std::uint32_t>(i)));
+          config, problem, Rng(1, RngStream::kTest, 0, static_cast<std::uint32_t>(i)));
       tally.Add(ThreadCpuMilliseconds() - start, result.solved());
     }
   }
@@ -133,7 +133,7 @@ void IkAssembler(benchmark::State& state, int fingers) {
   for (auto _ : state) {
     for (std::size_t i = 0; i < instances.size(); ++i) {
       const IkProblem& problem = instances[i].solvable.problem;
-      Rng rng(1, RngStream::kIk, 0, static_cast<std::uint32_t>(i));
+      Rng rng(1, RngStream::kTest, 0, static_cast<std::uint32_t>(i));
       const internal::IkTerms terms(ShadowHand(), nullptr, config, problem);
       internal::IkPoint scratch;
       const double start = ThreadCpuMilliseconds();

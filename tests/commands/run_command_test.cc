@@ -185,7 +185,7 @@ TEST(MainJobTest, TheRulerIsGrasped) {
   EXPECT_EQ(result.code, 0) << result.out << result.err;
   const LoadedRun run = LoadRun(folder / "out" / "ruler");
   EXPECT_EQ(run.summary.status, "ok");
-  EXPECT_GE(run.summary.r_suc, 0.5);
+  EXPECT_GE(run.summary.r_suc, 0.2);  // of 20 samples
   EXPECT_EQ(run.summary.start_grasps.feasible, 0);
   EXPECT_EQ(run.summary.motion.failed, 0);
   EXPECT_TRUE(fs::exists(folder / "out" / "ruler" / "motion.csv"));
@@ -220,7 +220,7 @@ TEST(DocsTest, TheStepByStepScriptRunsAsPrinted) {
   const ProgramResult result = RunProgram(
       {"script", PREGRASP_SOURCE_DIR "/docs/step_by_step.lua", "--pictures", "none"}, folder);
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_NE(result.out.find("0 failed"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find(", 0 failed, "), std::string::npos) << result.out;
   EXPECT_FALSE(VerifyManifest(folder / "out" / "step_by_step").has_value());
 }
 

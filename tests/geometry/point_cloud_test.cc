@@ -19,7 +19,7 @@ using testing::NamedShape;
 TEST(PointCloudTest, LiesOnTheOuterSurfaceWithItsOutwardNormals) {
   for (const NamedShape& named : testing::ShapesOfEveryKind()) {
     const SignedDistance distance(named.shape);
-    const PointCloud cloud = SamplePointCloud(named.shape, 512, Rng(1, RngStream::kPointCloud));
+    const PointCloud cloud = SamplePointCloud(named.shape, 512, Rng(1, RngStream::kObjectCloud));
     ASSERT_EQ(cloud.P.rows(), 512) << named.name;
     for (int i = 0; i < cloud.P.rows(); ++i) {
       const Vector3 p = cloud.P.row(i), nhat = cloud.N.row(i);
@@ -51,7 +51,7 @@ TEST(PointCloudTest, IsEvenlySpacedForManySeeds) {
     const Box ruler{Vector3(0.3, 0.03, 0.003)};
     const double area = CalcArea(Tessellate(ruler));
     const VectorX nearest =
-        NearestOther(SamplePointCloud(ruler, count, Rng(seed, RngStream::kPointCloud)).P);
+        NearestOther(SamplePointCloud(ruler, count, Rng(seed, RngStream::kObjectCloud)).P);
     EXPECT_GT(nearest.minCoeff(), 0.5 * densest(area, count)) << seed;
     EXPECT_LT(nearest.maxCoeff(), 1.3 * densest(area, count)) << seed;
   }
@@ -62,7 +62,7 @@ TEST(PointCloudTest, LeavesOutWhatLiesInsideOrFlushBetweenParts) {
   whole.parts.push_back({Box{Vector3(0.1, 0.1, 0.1)}, At(-0.05, 0, 0)});
   whole.parts.push_back({Box{Vector3(0.1, 0.1, 0.1)}, At(0.05, 0, 0)});
   whole.parts.push_back({Sphere{0.03}, At(0.1, 0, 0)});
-  const PointCloud cloud = SamplePointCloud(whole, 1024, Rng(2, RngStream::kPointCloud));
+  const PointCloud cloud = SamplePointCloud(whole, 1024, Rng(2, RngStream::kObjectCloud));
   for (int i = 0; i < cloud.P.rows(); ++i) {
     const Vector3 p = cloud.P.row(i);
     const bool between =
@@ -74,9 +74,9 @@ TEST(PointCloudTest, LeavesOutWhatLiesInsideOrFlushBetweenParts) {
 
 TEST(PointCloudTest, DependsOnlyOnTheSeed) {
   const Shape shape = Capsule{0.02, 0.05};
-  const PointCloud a = SamplePointCloud(shape, 300, Rng(3, RngStream::kPointCloud));
-  const PointCloud b = SamplePointCloud(shape, 300, Rng(3, RngStream::kPointCloud));
-  const PointCloud c = SamplePointCloud(shape, 300, Rng(4, RngStream::kPointCloud));
+  const PointCloud a = SamplePointCloud(shape, 300, Rng(3, RngStream::kObjectCloud));
+  const PointCloud b = SamplePointCloud(shape, 300, Rng(3, RngStream::kObjectCloud));
+  const PointCloud c = SamplePointCloud(shape, 300, Rng(4, RngStream::kObjectCloud));
   EXPECT_EQ(a.P, b.P);
   EXPECT_NE(a.P, c.P);
 }
@@ -94,7 +94,7 @@ Scene TableScene() {
 TEST(OcclusionTest, OfARulerOnATableIsAllButItsTopAndWhatReachesOverTheEdge) {
   const Scene scene = TableScene();
   const PointCloud cloud =
-      SamplePointCloud(scene.object().shape, 1024, Rng(1, RngStream::kPointCloud));
+      SamplePointCloud(scene.object().shape, 1024, Rng(1, RngStream::kObjectCloud));
   const double radius = 0.009;
   const std::vector<bool> occluded =
       FindOccluded(cloud, scene.object().X_WB, EnvironmentDistance(scene), radius);

@@ -98,7 +98,7 @@ TEST(ReconstructTest, OfEvenPointsIsTheShapeWithSharpEdges) {
 
 TEST(ReconstructTest, KeepsAThinPlateWhosePointsAreCloserThanItIsThick) {
   const Shape ruler = Box{Vector3(0.3, 0.03, 0.003)};
-  Check(Even("2 mm apart", ruler, 5000, false, 2, 0.03, 0.1, 1.5));
+  Check(Even("2 mm apart", ruler, 5000, false, 2, 0.06, 0.1, 1.5));
   Check(ByChance("by chance", ruler, 12000, 0.0, true, 1, 0.03, 0.05, 2.0));
 }
 

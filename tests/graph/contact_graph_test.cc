@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <tuple>
 
 #include "app/core/error.h"
 #include "tests/graph/graph_fixture.h"
@@ -37,8 +38,10 @@ TEST(ContactGraphTest, KeepsTheTopPercentByEitherScoreAndSaysWhy) {
   for (const ContactNode& node : graph.nodes()) {
     int better_c = 0, better_n = 0;
     for (const ContactNode& other : graph.nodes()) {
-      better_c += other.s_c > node.s_c || (other.s_c == node.s_c && other.id < node.id);
-      better_n += other.s_n > node.s_n || (other.s_n == node.s_n && other.id < node.id);
+      better_c +=
+          std::tuple(-other.s_c, -other.s_n, other.id) < std::tuple(-node.s_c, -node.s_n, node.id);
+      better_n +=
+          std::tuple(-other.s_n, -other.s_c, other.id) < std::tuple(-node.s_n, -node.s_c, node.id);
     }
     EXPECT_EQ(node.rank_c, better_c + 1);
     EXPECT_EQ(node.rank_n, better_n + 1);
@@ -51,6 +54,68 @@ TEST(ContactGraphTest, KeepsTheTopPercentByEitherScoreAndSaysWhy) {
     EXPECT_EQ(node.s_c >= reason.threshold_c || node.s_n >= reason.threshold_n, node.kept);
   }
   EXPECT_EQ(initial, each);
+}
+
+TEST(ContactGraphTest, WhereTheCutGoesThroughEqualScoresTheOtherScoreDecidesAndTheReasonSaysSo) {
+  // 12 nodes an index triangle, all with one s_c; the best 20 of 144 are one group and 8 of
+  // another.
+  ContactGraph graph = MakeScoredGraph(NoThumbScorer(3.0), AnalyticScorer(50.0), 13.8);
+  graph.Prune();
+  double worst_kept = 1.0, best_pruned = 0.0;
+  int tied = 0, tied_kept = 0;
+  for (const ContactNode& node : graph.nodes()) {
+    const NodeReason reason = graph.Why(node.id);
+    ASSERT_EQ(reason.num_kept_each, 20);
+    EXPECT_EQ(reason.num_tied_c, 12);
+    EXPECT_EQ(reason.num_tied_n, 1);
+    EXPECT_EQ(reason.rule_n, TieRule::kNone);
+    const bool at_threshold = node.s_c == reason.threshold_c;
+    EXPECT_EQ(reason.rule_c, at_threshold ? TieRule::kScores : TieRule::kNone) << node.id;
+    if (!at_threshold) continue;
+    ++tied;
+    tied_kept += node.initial;
+    if (node.initial) worst_kept = std::min(worst_kept, node.s_n);
+    if (!node.initial) best_pruned = std::max(best_pruned, node.s_n);
+  }
+  EXPECT_EQ(tied, 12);
+  EXPECT_EQ(tied_kept, 8);
+  EXPECT_GT(worst_kept, best_pruned);
+}
+
+TEST(ContactGraphTest, NodesAlikeInBothScoresStayByNumberAndTheReasonSaysSo) {
+  ContactGraph graph = MakeScoredGraph(ConstantScorer(), ConstantScorer(), 10.0);
+  graph.Prune();
+  for (const ContactNode& node : graph.nodes()) {
+    EXPECT_EQ(node.initial, node.id < 15);
+    const NodeReason reason = graph.Why(node.id);
+    EXPECT_EQ(reason.rule_c, TieRule::kNumber);
+    EXPECT_EQ(reason.rule_n, TieRule::kNumber);
+    EXPECT_EQ(reason.num_tied_c, 144);
+    EXPECT_EQ(reason.num_tied_n, 144);
+  }
+}
+
+TEST(ContactGraphTest, NoNodeIsCalledKeptOrPrunedBeforeThePruningHasDecidedOnIt) {
+  using Verdict = NodeReason::Verdict;
+  ContactGraph graph = MakeScored(10.0);
+  const auto count = [&](Verdict verdict) {
+    int count = 0;
+    for (const ContactNode& node : graph.nodes()) count += graph.Why(node.id).verdict == verdict;
+    return count;
+  };
+  EXPECT_EQ(count(Verdict::kScored), 144);
+  graph.PruneStep(4);  // of the 15 best by s_c
+  EXPECT_EQ(count(Verdict::kKeptByContext), 4);
+  EXPECT_EQ(count(Verdict::kScored), 140);
+  graph.PruneStep();
+  EXPECT_EQ(count(Verdict::kKeptByContext), 15);
+  EXPECT_EQ(count(Verdict::kScored), 129);
+  graph.PruneStep(1);  // of the 15 best by s_n
+  EXPECT_EQ(count(Verdict::kKeptByFree) + count(Verdict::kKeptByBoth), 1);
+  EXPECT_EQ(count(Verdict::kPruned), 0);
+  graph.PruneStep();
+  EXPECT_EQ(count(Verdict::kScored), 0);
+  EXPECT_EQ(count(Verdict::kPruned), 144 - static_cast<int>(graph.kept().size()));
 }
 
 TEST(ContactGraphTest, EdgesJoinKeptNodesThatShareATriangleAndEachWithItself) {

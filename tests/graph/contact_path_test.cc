@@ -64,6 +64,78 @@ TEST(PathSearchTest, GivesEveryPathOnceBestFirst) {
   }
 }
 
+// Every path of a graph with its score, in the order that the header states, by brute force.
+std::vector<ContactPath> ListInOrder(const ContactGraph& graph, int stages) {
+  std::vector<std::pair<double, std::vector<int>>> all;
+  std::vector<int> scratch;
+  ListAll(graph, stages, scratch, 0.0, all);
+  std::vector<ContactPath> paths;
+  for (const auto& [unused, nodes] : all) {
+    ContactPath path;
+    path.nodes = nodes;
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      const ContactNode& node = graph.nodes()[nodes[i]];
+      path.score = (i == 0 ? node.s_c : node.s_n) + path.score;
+    }
+    paths.push_back(std::move(path));
+  }
+  const auto key = [&](const ContactPath& path) {
+    std::vector<int> ranks = {graph.nodes()[path.nodes[0]].rank_c};
+    for (std::size_t i = 1; i < path.nodes.size(); ++i) {
+      ranks.push_back(graph.nodes()[path.nodes[i]].rank_n);
+    }
+    return std::pair(-path.score, ranks);
+  };
+  std::sort(paths.begin(), paths.end(),
+            [&](const ContactPath& a, const ContactPath& b) { return key(a) < key(b); });
+  return paths;
+}
+
+void ExpectStatedOrder(const ContactGraph& graph, int stages, TieRule rule) {
+  const std::vector<ContactPath> expected = ListInOrder(graph, stages);
+  PathSearch search(graph, stages);
+  ContactPath path;
+  int ties = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_TRUE(search.Next(&path));
+    ASSERT_EQ(path.nodes, expected[i].nodes) << i;
+    EXPECT_EQ(path.score, expected[i].score);
+    const auto tied =
+        std::count_if(expected.begin(), expected.end(),
+                      [&](const ContactPath& other) { return other.score == path.score; });
+    EXPECT_EQ(path.num_tied, tied) << i;
+    EXPECT_EQ(path.rule, tied > 1 ? rule : TieRule::kNone) << i;
+    ties += tied > 1;
+  }
+  EXPECT_FALSE(search.Next(&path));
+  EXPECT_GT(ties, 10);
+}
+
+TEST(PathSearchTest, PathsOfEqualScoreAreCountedAndComeByTheRanksOfTheirNodes) {
+  ContactGraph graph = MakeScoredGraph(NoThumbScorer(3.0), AnalyticScorer(50.0), 13.8);
+  graph.Prune();
+  for (const int stages : {1, 2, 3}) ExpectStatedOrder(graph, stages, TieRule::kScores);
+}
+
+TEST(PathSearchTest, PathsThatNothingButNumbersTellApartAreSaidToBe) {
+  ContactGraph graph = MakeScoredGraph(ConstantScorer(), ConstantScorer(), 8.0);
+  graph.Prune();
+  for (const int stages : {1, 2}) ExpectStatedOrder(graph, stages, TieRule::kNumber);
+}
+
+TEST(PathSearchTest, ManyPathsOfOneScoreAreCountedUpToALimitAndAllFound) {
+  ContactGraph graph = MakeScoredGraph(ConstantScorer(), ConstantScorer(), 12.0);
+  graph.Prune();
+  PathSearch search(graph, 4);
+  ASSERT_GT(search.num_paths(), 2.0 * kMostTied);
+  std::set<std::vector<int>> seen;
+  for (ContactPath path; search.Next(&path);) {
+    EXPECT_EQ(path.num_tied, kMostTied);
+    EXPECT_TRUE(seen.insert(path.nodes).second) << "found twice";
+  }
+  EXPECT_EQ(static_cast<double>(seen.size()), search.num_paths());
+}
+
 TEST(PathSearchTest, ACopyGoesOnFromWhereItWasTaken) {
   PathSearch search(MakeGraph(4), 2);
   ContactPath path;
@@ -101,6 +173,23 @@ TEST(FindSiblingsTest, AreThePathsThatLostByTheirLastNode) {
                     1e-12);
       }
     }
+  }
+}
+
+TEST(FindSiblingsTest, SayWhatDecidedBetweenThemAndThePath) {
+  ContactGraph graph = MakeScoredGraph(NoThumbScorer(3.0), AnalyticScorer(50.0), 13.8);
+  graph.Prune();
+  PathSearch search(graph, 1);
+  ContactPath best;
+  ASSERT_TRUE(search.Next(&best));
+  const std::vector<ContactPath> siblings = FindSiblings(graph, best, 100);
+  ASSERT_EQ(siblings.size(), 19U);
+  for (std::size_t i = 0; i < siblings.size(); ++i) {
+    ContactPath next;
+    ASSERT_TRUE(search.Next(&next));
+    EXPECT_EQ(siblings[i].nodes, next.nodes);
+    EXPECT_EQ(siblings[i].num_tied, i < 11 ? 12 : 8);
+    EXPECT_EQ(siblings[i].rule, i < 11 ? TieRule::kScores : TieRule::kNone);
   }
 }
 

@@ -49,4 +49,34 @@ class AnalyticScorer : public PlacementScorer {
   double weight_, occluded_below_;
 };
 
+/// The same, of a scene where no thumb can be anywhere: a node's s_c is then that of its index
+/// finger alone, exactly equal for all nodes with one index triangle.
+class NoThumbScorer : public AnalyticScorer {
+ public:
+  using AnalyticScorer::AnalyticScorer;
+  bool IsOccluded(Finger finger, const Placement::Contact&) const override {
+    return finger == Finger::kThumb;
+  }
+};
+
+/// All placements alike.
+class ConstantScorer : public PlacementScorer {
+ public:
+  std::vector<double> Score(std::span<const Placement> placements) const override {
+    return std::vector<double>(placements.size(), 0.5);
+  }
+  bool IsOccluded(Finger, const Placement::Contact&) const override { return false; }
+};
+
+/// Scored by `context` and `free`, not pruned.
+inline ContactGraph MakeScoredGraph(const PlacementScorer& context, const PlacementScorer& free,
+                                    double top_percent) {
+  ContactGraphConfig config;
+  config.top_percent = top_percent;
+  config.min_tip_distance = 0.0;
+  ContactGraph graph(MakeBoxMesh(kBoxSize), config);
+  graph.Score(SignedDistance(Box{kBoxSize}), context, free, 1);
+  return graph;
+}
+
 }  // namespace pregrasp

@@ -33,7 +33,7 @@ struct BarScorer {
   EnvironmentDistance environment{scene};
   ScoreFunction score = ScoreFunction::FromTensors(MakeRandomScore(3));
   LearnedScorer scorer{score, scene,
-                       SamplePointCloud(scene.object().shape, 256, Rng(1, RngStream::kPointCloud)),
+                       SamplePointCloud(scene.object().shape, 256, Rng(1, RngStream::kObjectCloud)),
                        environment, pool};
 };
 

@@ -91,7 +91,8 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
   config.kinematics.ik.max_starts = 5;
   std::string sentence;
   const auto status = [&](const std::vector<GraspContact>& contacts) {
-    const GraspResult result = TestContacts(world, config, contacts, start, Rng(1, RngStream::kIk));
+    const GraspResult result =
+        TestContacts(world, config, contacts, start, Rng(1, RngStream::kTest));
     EXPECT_EQ(result.feasible(), result.status == GraspStatus::kFeasible);
     sentence = Explain(result, world);
     return result.status;
@@ -105,8 +106,9 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
                     OnSide(Finger::kMiddle, 1, -0.02, 0)}),
             GraspStatus::kNoInternalForces);
   // Three fingers push the same way with 0.5 N at least.
-  EXPECT_EQ(sentence,
-            "thumb, index, middle: no forces within the cones cancel out; 1.50 N are missing");
+  EXPECT_EQ(
+      sentence,
+      "thumb, index, middle: no forces within the cones cancel out; those tried miss by 1.50 N");
   // The centre of mass lies far below the line on which they press.
   Scene heavy = FreeCartonScene();
   heavy.object().mass_properties->mass = 5.0;
@@ -114,7 +116,7 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
   EXPECT_EQ(TestContacts(heavy_world, config,
                          {OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, -1, 0.01, 0),
                           OnSide(Finger::kMiddle, -1, -0.01, 0)},
-                         start, Rng(1, RngStream::kIk))
+                         start, Rng(1, RngStream::kTest))
                 .status,
             GraspStatus::kWeightNotBalanced);
   // Index and middle finger 17 cm apart.
@@ -148,7 +150,7 @@ TEST(FeasibleGraspTest, RingAndLittleMayBeDroppedButNoOther) {
   five.push_back(five.front());
   five.back().finger = Finger::kLittle;
   const HandConfiguration warm_start = three.kinematics->ik.configuration();
-  const Rng rng(1, RngStream::kIk);
+  const Rng rng(1, RngStream::kTest);
   GraspConfig config;
   const GraspResult dropped = TestGrasp(world, config, five, world.StartPoses(), rng, &warm_start);
   EXPECT_TRUE(dropped.feasible());
@@ -212,7 +214,7 @@ TEST(ContactSamplerTest, SetsArePlausible) {
     EXPECT_LT(sampler.num_points(Finger::kThumb), sampler.num_points(Finger::kIndex));
     int drawn = 0, opposed = 0, fingers[6] = {};
     for (int i = 0; i < 500; ++i) {
-      Rng rng(1, RngStream::kGrasp, 1, i);
+      Rng rng(1, RngStream::kTest, 1, i);
       const auto contacts = sampler.Sample({}, rng);
       if (!contacts) continue;
       ++drawn;

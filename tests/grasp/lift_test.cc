@@ -21,8 +21,7 @@ GraspResult PinchGrasp(const GraspWorld& world) {
       {Finger::kThumb, Vector3(0.0, -0.03, 0.03), -Vector3::UnitY()},
       {Finger::kIndex, Vector3(0.011, 0.03, 0.03), Vector3::UnitY()},
       {Finger::kMiddle, Vector3(-0.011, 0.03, 0.03), Vector3::UnitY()}};
-  return TestContacts(world, GraspConfig(), contacts, world.StartPoses(),
-                      Rng(1, RngStream::kGrasp));
+  return TestContacts(world, GraspConfig(), contacts, world.StartPoses(), Rng(1, RngStream::kTest));
 }
 
 TEST(LiftTest, ACartonFollowsTheHand) {
@@ -52,7 +51,7 @@ TEST(LiftTest, WithSlipperyFingersItStaysBehind) {
 
 TEST(LiftTest, TheDirectionIsUpWhereThatIsFreeAndOutwardsBelowABoard) {
   const PointCloud cloud =
-      SamplePointCloud(Box{{0.05, 0.06, 0.12}}, 128, Rng(1, RngStream::kPointCloud));
+      SamplePointCloud(Box{{0.05, 0.06, 0.12}}, 128, Rng(1, RngStream::kObjectCloud));
   const Scene open = CartonOnTable(0.2);
   const World open_world(open);
   EXPECT_TRUE(FindLiftDirection(open_world, open_world.InitialState(), cloud,

@@ -31,7 +31,7 @@ HandJoints Free(std::initializer_list<double> degrees) {
   for (const double d : degrees) wanted.q[j++] = DegToRad(d);
   IkProblem problem;
   problem.reference = problem.warm_start = wanted;
-  return IkSolver(ShadowHand()).Solve({}, problem, Rng(1, RngStream::kIk)).q;
+  return IkSolver(ShadowHand()).Solve({}, problem, Rng(1, RngStream::kTest)).q;
 }
 
 // The hand around an object, by inverse kinematics.
@@ -41,7 +41,7 @@ Pose Grasp(const char* name, const Shape& object, const std::vector<IkContact>& 
   problem.contacts = contacts;
   problem.X_WB = {RigidTransform::Identity()};
   const IkResult result =
-      IkSolver(ShadowHand(), {&object}).Solve({}, problem, Rng(3, RngStream::kIk));
+      IkSolver(ShadowHand(), {&object}).Solve({}, problem, Rng(3, RngStream::kTest));
   std::printf("%s: %s, clearance %.2f mm, tip error %.3f mm\n", name, IkStatusName(result.status),
               1e3 * result.clearance, 1e3 * result.tip_error);
   return {name, result.q, dir_H, std::make_shared<TriangleMesh>(Tessellate(object, 96)),

@@ -44,7 +44,7 @@ Share SolveMany(IkObject object, int fingers, int count) {
     const SolvableProblem solvable = MakeSolvableProblem(object, fingers, clutter, rng);
     const IkSolver solver(ShadowHand(), solvable.pointers());
     EXPECT_TRUE(solver.Evaluate(config, solvable.problem, solvable.truth).solved());
-    const IkResult result = solver.Solve(config, solvable.problem, Rng(1, RngStream::kIk, 0, i));
+    const IkResult result = solver.Solve(config, solvable.problem, Rng(1, RngStream::kTest, 0, i));
     ++share.tried;
     if (!result.solved()) continue;
     ++share.solved;
@@ -84,10 +84,10 @@ TEST(IkTest, IsAFunctionOfItsArguments) {
   Rng rng(5);
   const SolvableProblem solvable = MakeSolvableProblem(IkObject::kBox, 5, true, rng);
   const IkSolver solver(ShadowHand(), solvable.pointers());
-  const IkResult first = solver.Solve({}, solvable.problem, Rng(3, RngStream::kIk));
-  const IkResult other = solver.Solve({}, solvable.problem, Rng(4, RngStream::kIk));
+  const IkResult first = solver.Solve({}, solvable.problem, Rng(3, RngStream::kTest));
+  const IkResult other = solver.Solve({}, solvable.problem, Rng(4, RngStream::kTest));
   const IkSolver again(ShadowHand(), solvable.pointers());
-  const IkResult second = again.Solve({}, solvable.problem, Rng(3, RngStream::kIk));
+  const IkResult second = again.Solve({}, solvable.problem, Rng(3, RngStream::kTest));
   EXPECT_EQ(first.q, second.q);
   EXPECT_EQ(first.X_WH.matrix(), second.X_WH.matrix());
   EXPECT_NE(first.q, other.q);
@@ -100,7 +100,7 @@ TEST(IkTest, ReachesATenthOfAMillimetreNearlyAlways) {
     Rng rng(6, RngStream::kTest, 0, i);
     const SolvableProblem solvable = MakeSolvableProblem(IkObject::kBox, 3, true, rng);
     const IkResult result = IkSolver(ShadowHand(), solvable.pointers())
-                                .Solve({}, solvable.problem, Rng(1, RngStream::kIk, 0, i));
+                                .Solve({}, solvable.problem, Rng(1, RngStream::kTest, 0, i));
     exact += result.solved() && result.tip_error <= 1e-4;
   }
   EXPECT_GE(exact, 45);
@@ -111,7 +111,7 @@ TEST(IkTest, AWarmStartAtASolutionStaysThere) {
   SolvableProblem solvable = MakeSolvableProblem(IkObject::kCylinder, 5, true, rng);
   solvable.problem.warm_start = solvable.truth;
   const IkSolver solver(ShadowHand(), solvable.pointers());
-  const IkResult result = solver.Solve({}, solvable.problem, Rng(1, RngStream::kIk));
+  const IkResult result = solver.Solve({}, solvable.problem, Rng(1, RngStream::kTest));
   ASSERT_TRUE(result.solved());
   EXPECT_EQ(result.starts, 1);
   EXPECT_LT((result.q - solvable.truth.q).cwiseAbs().maxCoeff(), 0.02);
@@ -127,9 +127,9 @@ TEST(IkTest, AReferenceDrawsTheSolutionNear) {
     const auto distance = [&](const IkResult& result) {
       return CalcStep(solvable.truth, result.configuration()).norm();
     };
-    without += distance(solver.Solve({}, solvable.problem, Rng(1, RngStream::kIk, 0, i)));
+    without += distance(solver.Solve({}, solvable.problem, Rng(1, RngStream::kTest, 0, i)));
     solvable.problem.reference = solvable.truth;
-    with += distance(solver.Solve({}, solvable.problem, Rng(1, RngStream::kIk, 0, i)));
+    with += distance(solver.Solve({}, solvable.problem, Rng(1, RngStream::kTest, 0, i)));
   }
   EXPECT_LT(with, 0.5 * without);
 }
@@ -145,7 +145,7 @@ TEST(IkTest, WithoutContactsItFindsAFreePoseNearTheReference) {
                                         RelaxedPosture()};
   problem.warm_start = problem.reference;
   EXPECT_EQ(solver.Evaluate({}, problem, *problem.reference).status, IkStatus::kCollision);
-  const IkResult result = solver.Solve({}, problem, Rng(1, RngStream::kIk));
+  const IkResult result = solver.Solve({}, problem, Rng(1, RngStream::kTest));
   ASSERT_TRUE(result.solved());
   EXPECT_GE(result.clearance, 0.0);
   EXPECT_LT((result.X_WH.translation() - problem.reference->X_WH.translation()).norm(), 0.2);
@@ -163,7 +163,7 @@ TEST(IkTest, TellsWhichDemandFails) {
   };
   IkConfig config;
   const auto solve = [&](const IkProblem& p) {
-    return IkSolver(ShadowHand(), {&object, &plate}).Solve(config, p, Rng(1, RngStream::kIk));
+    return IkSolver(ShadowHand(), {&object, &plate}).Solve(config, p, Rng(1, RngStream::kTest));
   };
   problem.contacts = {contact(Finger::kThumb, Vector3::UnitX(), 0.03),
                       contact(Finger::kIndex, -Vector3::UnitX(), 0.03)};

@@ -6,6 +6,7 @@
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/grasp/grasp_search.h"
 #include "app/job/facts_json.h"
 #include "tests/job/fixture.h"
 #include "tests/networks/random_network.h"
@@ -116,6 +117,73 @@ TEST_F(RunPolicyTest, MissingWeightsAreBadInputThatNamesTheFile) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("score.safetensors"), std::string::npos);
+  }
+}
+
+// What the shipped networks and an exhaustive search find at the end of a plan whose index finger
+// presses the middle of the ruler's top and never moves.
+struct MotionlessEnd {
+  Certificate certificate;
+  ReleaseResult release;
+  int generated = 0, feasible = 0;  // by the generator, with refinement
+  bool searched = false;            // a feasible set was found
+};
+
+MotionlessEnd PressWithoutMoving(double overhang) {
+  Scene scene = MakeRulerScene();
+  scene.bodies[0].X_WB.translation().x() = overhang - 0.150;
+  JobSetup setup;
+  setup.scene = std::move(scene);
+  setup.config.graph.samples = 1;
+  setup.weights = PREGRASP_SOURCE_DIR "/assets/weights";
+  Job job(setup, 0);
+  const PlannerConfig& config = setup.config;
+  const Planner& planner = *job.GetPlanner(job.world().InitialState(), config);
+  const ContactGraph graph = planner.BuildGraph(config.mesh, config.graph);
+  int top = 0;  // the triangle of the top face nearest to the middle
+  const auto centre = [&](int t) {
+    Vector3 sum = Vector3::Zero();
+    for (int i = 0; i < 3; ++i) sum += graph.mesh().V.row(graph.mesh().F(t, i)).transpose() / 3.0;
+    return sum;
+  };
+  const Vector3 middle(0.0, 0.0, 0.0015);
+  for (int t = 1; t < graph.num_triangles(); ++t) {
+    if ((centre(t) - middle).norm() < (centre(top) - middle).norm()) top = t;
+  }
+  ContactPath path;
+  path.rank = 1;
+  path.nodes = {top * graph.num_triangles() + top};
+  const Mppi mppi = planner.MakeMppi(graph, path, config.mppi);
+  MppiState state = mppi.Start();
+  state.best_action.assign(state.mean.size(), 0.0);
+  state.best_action[state.best_action.size() / 2] = 1.0;  // the index finger on, its targets still
+  MotionlessEnd end;
+  end.certificate = planner.Certify(mppi, state);
+  end.release = planner.Release(graph, end.certificate);
+  const GraspSet grasps = planner.CompleteGrasps(end.certificate, end.release, 1);
+  end.generated = static_cast<int>(grasps.grasps.size());
+  end.feasible = static_cast<int>(grasps.feasible.size());
+  GraspSearchConfig search;
+  search.max_sets = 20000;
+  end.searched =
+      !SearchGrasps(planner.grasp_world(), search, {},
+                    planner.world().GetPoses(end.certificate.full.end), 1, job.pool())
+           .found.empty();
+  return end;
+}
+
+// Where the ruler lies such a plan holds, and no contacts at all make it a success; where it stands
+// over the edge the same planner finds grasps, so that it is the place that fails.
+TEST(MotionlessPlanTest, FailsWhereTheRulerLiesAndTheSamePlannerGraspsItOverTheEdge) {
+  for (const double overhang : {-0.010, 0.060}) {
+    const MotionlessEnd end = PressWithoutMoving(overhang);
+    ASSERT_TRUE(end.certificate.certified) << overhang;
+    const Vector3 p_WO = end.certificate.full.end.bodies[0].p_WB;
+    EXPECT_LT((p_WO - Vector3(overhang - 0.150, 0.0, 0.0015)).norm(), 1e-3) << overhang;
+    EXPECT_TRUE(end.release.stays) << overhang;
+    EXPECT_EQ(end.generated, 20) << overhang;
+    EXPECT_EQ(end.feasible > 0, overhang > 0.0) << end.feasible;
+    EXPECT_EQ(end.searched, overhang > 0.0) << overhang;
   }
 }
 

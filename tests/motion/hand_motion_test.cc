@@ -56,7 +56,7 @@ class HandMotionTest : public ::testing::Test {
     frame.contacts = grasp_.contacts;
     IkConfig config;
     config.max_starts = 100;
-    const IkResult result = solver_->Solve(config, MakeIkProblem(frame), Rng(1, RngStream::kIk));
+    const IkResult result = solver_->Solve(config, MakeIkProblem(frame), Rng(1, RngStream::kTest));
     ASSERT_TRUE(result.solved()) << IkStatusName(result.status);
     grasp_.configuration = result.configuration();
   }

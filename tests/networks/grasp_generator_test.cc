@@ -48,10 +48,8 @@ TEST_F(GraspGeneratorTest, EachOfTheThreeGeneratorsPredictsTheOtherFingers) {
 }
 
 TEST_F(GraspGeneratorTest, SamplesDifferAndAreReproducible) {
-  const auto a =
-      generator_.Sample(structure_, encoded_, choices_[2], 20, Rng(1, RngStream::kGrasp));
-  const auto b =
-      generator_.Sample(structure_, encoded_, choices_[2], 20, Rng(1, RngStream::kGrasp));
+  const auto a = generator_.Sample(structure_, encoded_, choices_[2], 20, Rng(1, RngStream::kTest));
+  const auto b = generator_.Sample(structure_, encoded_, choices_[2], 20, Rng(1, RngStream::kTest));
   EXPECT_EQ(a, b);
   EXPECT_NE(a[0], a[1]);
 }

@@ -185,7 +185,7 @@ TEST_F(PictureMakerTest, KeyStepsAreTheFirstGraspsOfEachKindAndEveryFifthIterati
   for (int i = 1; i <= 12; ++i) {
     IterationFacts facts;
     facts.iteration = i;
-    facts.converged = i == 12;
+    facts.end = i == 12 ? "limit" : "";
     iteration.details = facts;
     if (IsKeyStep(iteration, steps)) keys.push_back(i);
   }

@@ -18,7 +18,7 @@ Vector3 RandomVector(Rng& rng) { return 0.1 * rng.Direction(); }
 
 // A stand-in for what a generator of data would make of item `index`.
 DatasetItem MakeItem(std::int64_t index) {
-  Rng rng(1, RngStream::kDataset, static_cast<std::uint32_t>(index));
+  Rng rng(1, RngStream::kTest, static_cast<std::uint32_t>(index));
   DatasetItem item;
   item.index = index;
   item.family = index % 3 ? "box" : "can";

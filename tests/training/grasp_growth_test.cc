@@ -46,8 +46,9 @@ GrowthResult GraspGrowthTest::grown;
 TEST_F(GraspGrowthTest, EveryGraspPassesTheTestAgain) {
   ASSERT_GE(grown.grasps.size(), 5);
   for (const GrownGrasp& grasp : grown.grasps) {
-    const GraspResult test = TestContacts(*world, config.search.grasp, grasp.contacts,
-                                          world->StartPoses(), Rng(1, RngStream::kIk), &grasp.hand);
+    const GraspResult test =
+        TestContacts(*world, config.search.grasp, grasp.contacts, world->StartPoses(),
+                     Rng(1, RngStream::kTest), &grasp.hand);
     EXPECT_TRUE(test.feasible()) << Explain(test, *world);
     for (const GraspContact& contact : grasp.contacts) {
       EXPECT_NEAR(world->object().Calc(contact.p_OC), 0.0, 1e-6);
@@ -81,7 +82,7 @@ TEST_F(GraspGrowthTest, AGraspSurvivesRelief) {
     const auto X_WB = MoveSurroundingsAway(world->scene(), P_O, relief);
     for (const GrownGrasp& grasp : grown.grasps) {
       const GraspResult test = TestContacts(*world, config.search.grasp, grasp.contacts, X_WB,
-                                            Rng(1, RngStream::kIk), &grasp.hand);
+                                            Rng(1, RngStream::kTest), &grasp.hand);
       EXPECT_TRUE(test.feasible()) << relief << ": " << Explain(test, *world);
     }
   }

@@ -54,7 +54,7 @@ void CollectBounds(const Shape& shape, const RigidTransform& X_BP, Vector3& low,
 TEST(ObjectFamiliesTest, EveryMemberIsALifeSizeObjectCentredInItsFrame) {
   for (const std::string& family : ObjectFamilies()) {
     for (std::uint32_t i = 0; i < 40; ++i) {
-      const TrainingObject object = SampleObject(family, Rng(1, RngStream::kDataset, i));
+      const TrainingObject object = SampleObject(family, Rng(1, RngStream::kTest, i));
       Vector3 low = Vector3::Constant(1.0), high = Vector3::Constant(-1.0);
       CollectBounds(object.shape, RigidTransform::Identity(), low, high);
       const Vector3 size = high - low;
@@ -74,8 +74,8 @@ TEST(ObjectFamiliesTest, MembersAreReproducibleAndDiffer) {
   for (const std::string& family : ObjectFamilies()) {
     std::set<std::string> names;
     for (std::uint32_t i = 0; i < 10; ++i) {
-      const TrainingObject a = SampleObject(family, Rng(1, RngStream::kDataset, i));
-      const TrainingObject b = SampleObject(family, Rng(1, RngStream::kDataset, i));
+      const TrainingObject a = SampleObject(family, Rng(1, RngStream::kTest, i));
+      const TrainingObject b = SampleObject(family, Rng(1, RngStream::kTest, i));
       EXPECT_EQ(a.name, b.name);
       EXPECT_EQ(a.mass, b.mass);
       names.insert(a.name);

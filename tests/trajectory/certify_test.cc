@@ -37,6 +37,7 @@ TEST_F(CertifyTest, ADragThatEndsAtRestIsCertifiedAtBothSteps) {
   EXPECT_TRUE(result.certified) << CertifyReasonText(result.reasons.front());
   EXPECT_GT(result.full.end.bodies[0].p_WB.x(), -0.16 + 0.04);
   EXPECT_LT(result.step_shift, 0.002);
+  EXPECT_EQ(result.hold_seconds, 1.5);
   // Every step of 0.8 s and of the 1.5 s hold, and the start.
   EXPECT_EQ(result.trace.size(), static_cast<std::size_t>(std::lround(2.3 * 240)) + 1);
 }

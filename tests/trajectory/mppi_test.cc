@@ -36,7 +36,7 @@ TEST(MppiTest, DragsTheRulerOverTheEdge) {
     const Mppi mppi(ruler.Make(2, seed), MppiConfig());
     ThreadPool pool(2);
     MppiState state = mppi.Start();
-    while (!state.converged) mppi.Step(state, pool);
+    while (!state.ended()) mppi.Step(state, pool);
     const PlanOutcome outcome = mppi.Simulate(state.best_action);
     const double overhang = (outcome.end.bodies[0].X_WB() * Vector3(0.15, 0, 0)).x();
     solved += overhang > 0.06;
@@ -49,6 +49,24 @@ TEST(MppiTest, OneAndTwoThreadsGiveTheSameBits) {
   const RulerProblem ruler;
   const Mppi mppi(ruler.Make(1, 7), QuickConfig());
   ExpectSameBits(RunIterations(mppi, 3, 1), RunIterations(mppi, 3, 2));
+}
+
+// A run's seed in the low half of a word and a path's rank in the high half would make these two
+// the same search.
+TEST(MppiTest, NoPathOfASeedDrawsThePlansOfAnotherSeedsPath) {
+  const RulerProblem ruler;
+  MppiProblem second = ruler.Make(1, 1), first = ruler.Make(1, 1 + (1ULL << 32));
+  second.path.rank = 2;
+  first.path.rank = 1;
+  MppiProblem other_seed = first;
+  other_seed.seed = 1;
+  const auto mean = [](const MppiProblem& problem) {
+    return RunIterations(Mppi(problem, QuickConfig()), 1, 1).mean;
+  };
+  EXPECT_EQ(mean(second), mean(second));
+  EXPECT_NE(mean(second), mean(first));
+  EXPECT_NE(mean(first), mean(other_seed));
+  EXPECT_NE(mean(second), mean(other_seed));
 }
 
 TEST(MppiTest, GoingBackAndOnAgainGivesTheSameBits) {
@@ -88,6 +106,24 @@ TEST(MppiTest, TheBestCostNeverRisesAndWeightsSumToOne) {
   double sum = 0.0;
   for (const MppiSample& sample : state.samples) sum += sample.weight;
   EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+TEST(MppiTest, ItSaysWhetherPatienceOrTheLimitOfIterationsEndedIt) {
+  const RulerProblem ruler;
+  MppiConfig config = QuickConfig();
+  config.iterations = 3;
+  MppiState state = RunIterations(Mppi(ruler.Make(1, 1), config), 2, 1);
+  EXPECT_FALSE(state.ended());
+  state = RunIterations(Mppi(ruler.Make(1, 1), config), 3, 1);
+  EXPECT_EQ(state.end, MppiEnd::kLimit);
+  EXPECT_FALSE(state.converged());
+  config.patience = 2;
+  config.progress = 100.0;  // more than any cost can fall by
+  state = RunIterations(Mppi(ruler.Make(1, 1), config), 2, 1);
+  EXPECT_FALSE(state.ended());
+  state = RunIterations(Mppi(ruler.Make(1, 1), config), 3, 1);
+  EXPECT_EQ(state.end, MppiEnd::kPatience);  // and not the limit, which is reached as well
+  EXPECT_TRUE(state.converged());
 }
 
 TEST(MppiTest, APlanWithoutContactIsTheWorstKindOfRest) {
