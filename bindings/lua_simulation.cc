@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/core/interrupt.h"
+#include "app/core/json_values.h"
 #include "app/pictures/forces.h"
 #include "bindings/lua_session.h"
 
@@ -110,8 +111,6 @@ bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
   CountMemory(L, kBytesPerStepKib * (sim.simulation()->num_states() - before));
   return stopped;
 }
-
-nlohmann::json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 // Methods.
 

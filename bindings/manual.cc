@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "bindings/scene_file.h"
+#include "app/core/data_folder.h"
 
 namespace pregrasp {
 namespace {

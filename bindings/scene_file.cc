@@ -1,5 +1,6 @@
 #include "bindings/scene_file.h"
 
+#include "app/core/data_folder.h"
 #include "app/core/error.h"
 #include "app/geometry/load_shape.h"
 #include "bindings/lua_scene.h"
@@ -45,8 +46,6 @@ struct FileFinder {
 };
 
 }  // namespace
-
-fs::path DataFolder() { return PREGRASP_DATA_FOLDER; }
 
 void FinishScene(Scene& scene, const fs::path& folder, std::vector<Setting>& settings) {
   ApplySceneSettings(scene, settings);

@@ -9,10 +9,6 @@
 
 namespace pregrasp {
 
-/// The folder that holds scenes/, lua/ and assets/: the source tree that the program was built
-/// from.
-std::filesystem::path DataFolder();
-
 /// Runs a scene file in a Lua world of its own (2 s, 64 MB) and returns its scene: settings
 /// applied, validated, shapes loaded. Settings that are not the scene's stay in the list.
 /// @throws InputError with file:line where there is one.

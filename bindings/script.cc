@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/core/data_folder.h"
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
 #include "app/job/planner_settings.h"

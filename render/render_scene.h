@@ -19,7 +19,6 @@ struct Rgba {
 enum class Shading {
   kSolid,    ///< lit, casts and receives shadows
   kGhost,    ///< translucent, unshadowed: another time or an alternative
-  kOverlay,  ///< flat colour over everything
 };
 
 /// One mesh placed in the world. Meshes are shared, never change once they are here, and are cached

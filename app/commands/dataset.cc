@@ -11,6 +11,7 @@
 
 #include "app/commands/dataset.h"
 #include "app/commands/progress.h"
+#include "app/core/data_folder.h"
 #include "app/core/error.h"
 #include "app/geometry/point_cloud.h"
 #include "app/training/dataset_run.h"

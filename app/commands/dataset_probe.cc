@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/commands/dataset.h"
+#include "app/core/data_folder.h"
 #include "app/core/error.h"
 #include "app/graph/learned_scorer.h"
 #include "app/training/labels.h"

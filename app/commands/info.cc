@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/commands/commands.h"
+#include "app/core/data_folder.h"
 #include "app/recording/build_info.h"
 #include "bindings/machine.h"
 #include "bindings/scene_file.h"

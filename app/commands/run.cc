@@ -1,5 +1,3 @@
-#include "app/job/run_policy.h"
-
 #include <fmt/core.h>
 
 #include <cstdint>
@@ -11,8 +9,10 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
+#include "app/core/data_folder.h"
 #include "app/core/interrupt.h"
 #include "app/job/planner_settings.h"
+#include "app/job/run_policy.h"
 #include "bindings/scene_file.h"
 #include "bindings/script.h"
 
@@ -72,7 +72,10 @@ int Run(const RunOptions& options) {
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / session.scene().name
                                         : std::filesystem::path(options.out);
-  session.Record(out, ParsePictureMode(options.pictures, "--pictures", ""));
+  const PictureMode pictures = ParsePictureMode(options.pictures, "--pictures", "");
+  // Weights that are missing or damaged are told before anything is written.
+  session.job().GetPlanner(session.GetStart(), config);
+  session.Record(out, pictures);
   try {
     ProgressLine line;
     const RunResult result =

@@ -5,6 +5,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
+#include "app/core/data_folder.h"
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "app/job/facts_json.h"
@@ -12,7 +13,6 @@
 #include "app/recording/build_info.h"
 #include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
-#include "bindings/script.h"
 
 namespace pregrasp {
 namespace {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "app/core/data_folder.h"
 #include "app/core/error.h"
 #include "app/core/text.h"
 
@@ -245,7 +246,7 @@ HandModel LoadHandModel(const std::filesystem::path& urdf_file) { return Reader(
 
 const HandModel& ShadowHand() {
   static const HandModel hand =
-      LoadHandModel(std::filesystem::path(PREGRASP_ASSETS_DIR) / "hand/shadow_right.urdf");
+      LoadHandModel(DataFolder() / "assets" / "hand" / "shadow_right.urdf");
   return hand;
 }
 

@@ -28,6 +28,7 @@ const char* TieRuleName(TieRule rule) {
 }
 
 void BuildMesh(Application& a) {
+  a.next.ForgetGraph();
   a.next.planner = a.job.GetPlanner(a.next.start, a.next.config);
   const PlannerConfig& config = a.next.config;
   const auto graph =
@@ -131,6 +132,7 @@ void TakePath(Application& a) {
     facts.siblings.push_back({sibling.nodes, sibling.score});
   }
   a.facts.details = std::move(facts);
+  a.next.ForgetPath();
   a.next.path = path;
 }
 

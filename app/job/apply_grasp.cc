@@ -53,6 +53,7 @@ GraspFacts MakeGraspFacts(const JobState& state, int number) {
 
 void TakeGrasp(Application& a) {
   Require(a.next.certificate != nullptr, "a trajectory that was put to certification", "none");
+  a.next.ForgetMotion();
   if (!a.next.grasps || a.command.options.contains("settings")) {
     Require(a.next.num_grasps == 0, "settings of all samples before the first", "a later one");
     const Planner planner = a.next.planner->WithConfig(a.next.config);
@@ -72,6 +73,7 @@ void TakeGrasp(Application& a) {
 }
 
 void LiftGrasp(Application& a) {
+  a.next.ForgetMotion();
   const int number = CommandOptions(a.command).Int("grasp");
   Require(a.next.grasps && number >= 1 && number <= a.next.num_grasps, "the number of a grasp",
           "another");

@@ -68,6 +68,7 @@ void Prepare(Application& a) {
 }
 
 void Iterate(Application& a) {
+  a.next.ForgetTrajectory();
   Prepare(a);
   Require(!a.next.optimization->ended() || a.command.options.contains("settings"),
           "an optimisation that goes on", "one that has ended");
@@ -129,6 +130,7 @@ CertifyFacts MakeCertifyFacts(const JobState& state) {
 
 void CertifyBest(Application& a) {
   Require(a.next.optimization && a.next.optimization->iteration > 0, "at least one step()", "none");
+  a.next.ForgetTrajectory();
   const Planner planner = a.next.planner->WithConfig(a.next.config);
   auto certificate =
       std::make_shared<const Certificate>(planner.Certify(*a.next.mppi, *a.next.optimization));

@@ -2,6 +2,38 @@
 
 namespace pregrasp {
 
+void JobState::ForgetGraph() {
+  graph.reset();
+  paths.reset();
+  ForgetPath();
+}
+
+void JobState::ForgetPath() {
+  path.reset();
+  mppi.reset();
+  optimization.reset();
+  ForgetTrajectory();
+}
+
+void JobState::ForgetTrajectory() {
+  certificate.reset();
+  release.reset();
+  ForgetGrasps();
+}
+
+void JobState::ForgetGrasps() {
+  grasps.reset();
+  num_grasps = 0;
+  lifts.clear();
+  ForgetMotion();
+}
+
+void JobState::ForgetMotion() {
+  chosen_grasp = 0;
+  motion.reset();
+  motion_state.reset();
+}
+
 Progress CalcProgress(const JobState& state) {
   using Reached = Progress::Reached;
   Progress progress;

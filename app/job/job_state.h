@@ -41,6 +41,13 @@ struct JobState {
 
   std::shared_ptr<const Simulation> simulation;
   int num_actions = 0;  ///< on the simulation
+
+  // What is made from something goes when that is made anew.
+  void ForgetGraph();
+  void ForgetPath();
+  void ForgetTrajectory();
+  void ForgetGrasps();
+  void ForgetMotion();
 };
 
 /// How far a state has come towards a grasp that is lifted and a hand that gets there.

@@ -31,6 +31,24 @@ const VerdictFacts* FindVerdict(const Timeline& timeline) {
   return nullptr;
 }
 
+// What decides that a stage's verdict is final.
+bool AllGraspsTried(const JobState& state) {
+  if (state.release->conditions.empty()) return true;  // there are none to try
+  return state.grasps && state.num_grasps == static_cast<int>(state.grasps->grasps.size());
+}
+
+bool AllFeasibleLifted(const JobState& state) {
+  for (int number = 1; number <= state.num_grasps; ++number) {
+    if (state.grasps->grasps[number - 1].feasible() && state.lifts.count(number) == 0) return false;
+  }
+  return true;
+}
+
+bool IsMotionFinished(const JobState& state) {
+  return state.motion && state.motion_state->filled &&
+         state.motion_state->sweeps >= state.motion->config().smoothing_sweeps;
+}
+
 void FillTrajectory(const JobState& state, const Node& node, RunSummary& summary) {
   const Node* certified = FindOnTheWay<CertifyFacts>(node);
   if (certified == nullptr) {
@@ -177,17 +195,21 @@ std::vector<WorldState> GetRollout(const JobState& state) {
 std::optional<std::string> StatusAt(const Timeline& timeline, const Node& node) {
   const VerdictFacts* verdict = FindVerdict(timeline);
   if (verdict != nullptr && verdict->feasible > 0) return "start_graspable";
+  const auto state = timeline.GetState(node);
   switch (node.progress.reached) {
     case Progress::Reached::kNothing:
       return std::nullopt;
     case Progress::Reached::kTrajectory:
       return "not_certified";
     case Progress::Reached::kCertified:
-      return "no_feasible_grasp";
+      if (AllGraspsTried(*state)) return "no_feasible_grasp";
+      return std::nullopt;
     case Progress::Reached::kFeasible:
-      return "lift_failed";
+      if (AllGraspsTried(*state) && AllFeasibleLifted(*state)) return "lift_failed";
+      return std::nullopt;
     case Progress::Reached::kLifted:
-      return "motion_failed";
+      if (IsMotionFinished(*state)) return "motion_failed";
+      return std::nullopt;
     case Progress::Reached::kMoved:
       return "ok";
   }

@@ -93,10 +93,10 @@ void Session::Record(const std::filesystem::path& directory, PictureMode picture
   recorder_ = OpenRecorder(directory, pictures);
 }
 
-// A summary of a plan says whether the object could be grasped at the start.
+// A summary of grasps says whether the object could be grasped at the start.
 void Session::CompleteVerdict() {
   for (const auto& node : timeline_->nodes()) {
-    if (node->command.verb != Verb::kCertify) continue;
+    if (node->command.verb != Verb::kGrasp) continue;
     timeline_->Do(timeline_->root(), Verb::kVerdict);
     return;
   }

@@ -122,6 +122,34 @@ TEST(SimulationBindingTest, GoesBackExactlyAndForksGoTheirOwnWay) {
             "true\ttrue\ttrue\ttrue\ntrue\ttrue\tsim.2\ntrue\ttrue\n0.0\t0\tsim.1\n");
 }
 
+TEST(SimulationBindingTest, SimulationsStandStillWhileBreakWhensFunctionIsAsked) {
+  EXPECT_EQ(Script(R"(
+    local s, other = open(), open()
+    local x, y, z = s:simulate(), s:simulate(), other:simulate()
+    x:step(20)
+    local refused
+    s:break_when(function(ev)
+      refused = not pcall(x.back, x, 5) and not pcall(y.step, y) and not pcall(x.fork(x).step, y)
+      z:step(2)  -- of another session: nothing to do with this one
+      return true
+    end)
+    print(x:step(3), refused, x.num_steps, y.num_steps, z.num_steps)
+    s:break_when(function(ev) s:break_when(nil) return ev.num_steps == 23 end)
+    print(x:step(5), x.num_steps, x:step(1), x.num_steps))"),
+            "true\ttrue\t21\t0\t2\ntrue\t23\tfalse\t24\n");
+}
+
+TEST(SimulationBindingTest, GoingBackIntoAnActionIsTheActionStoppedThere) {
+  EXPECT_EQ(Script(R"(
+    local s = open()
+    local a, b = s:simulate(), s:simulate()
+    a:step(20) b:step(50)
+    b:back(30) print(a.object.p[1] == b.object.p[1], b.num_steps, b.step_id)
+    a:back(20) print(a.num_steps, a.step_id)
+    b:step(30) print(b.num_steps, b.step_id))"),
+            "true\t20\tsim.1~3\n0\tscene.start\n50\tsim.2~3\n");
+}
+
 TEST(SimulationBindingTest, BreakWhenEndsAnActionAtTheStepItAsksFor) {
   EXPECT_EQ(Script(R"(
     local s = open()

@@ -112,7 +112,7 @@ TEST_F(RunCommandTest, CtrlCLeavesAValidShorterRun) {
   EXPECT_FALSE(VerifyManifest(folder_ / "run").has_value());
 }
 
-// What pregrasp run does, as a script would; two paths at most.
+// What pregrasp run does, as a script would.
 constexpr char kSameAsRun[] = R"lua(
   local pg = require "pregrasp"
   local settings = {}
@@ -124,7 +124,7 @@ constexpr char kSameAsRun[] = R"lua(
   g:score()
   g:prune {}
   local paths, done = g:paths {}, false
-  for _ = 1, 2 do
+  for _ = 1, PATHS do
     local o = not done and paths:next():optimize {}
     if o then
       while o:step() do end
@@ -154,13 +154,14 @@ void ExpectSameRun(const fs::path& a, const fs::path& b) {
   EXPECT_EQ(x, y);
 }
 
-std::string ScriptText() {
+std::string ScriptText(int paths) {
   std::string text = kSameAsRun;
+  text.replace(text.find("PATHS"), 5, std::to_string(paths));
   return text.replace(text.find("SCENE"), 5, kScene);
 }
 
 TEST_F(RunCommandTest, AScriptOfTheSameCommandsLeavesTheSameRunWhereNothingSucceeds) {
-  std::ofstream(folder_ / "same.lua") << ScriptText();
+  std::ofstream(folder_ / "same.lua") << ScriptText(2);
   const std::string settings =
       "mppi.iterations=2 grasps.samples=2 grasps.max_refinements=1 grasps.starts=2";
   std::vector<std::string> arguments = Arguments({"--paths", "2"});
@@ -195,8 +196,8 @@ TEST(MainJobTest, AScriptOfTheSameCommandsLeavesTheSameRun) {
   const TestFolder temporary;
   const fs::path& folder = temporary.path();
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
-  std::ofstream(folder / "same.lua") << ScriptText();
-  EXPECT_EQ(RunProgram({"run", kScene, "--pictures", "none", "--paths", "2"}, folder).code, 0);
+  std::ofstream(folder / "same.lua") << ScriptText(10);
+  EXPECT_EQ(RunProgram({"run", kScene, "--pictures", "none"}, folder).code, 0);
   const ProgramResult script = RunProgram({"script", (folder / "same.lua").string(), ""}, folder);
   EXPECT_EQ(script.code, 0) << script.err;
   ExpectSameRun(folder / "out" / "ruler", folder / "out" / "script");
