@@ -91,8 +91,12 @@ TEST_F(RunTest, TheSummarySaysWhatWasDone) {
   EXPECT_EQ(run.summary["status"], RunStatusName(result.status));
   EXPECT_EQ(run.summary["n_paths"], 2);
   EXPECT_EQ(run.summary["counts"]["nodes"], 1600);
-  EXPECT_EQ(run.summary["counts"]["kept"].get<int>(),
-            run.manifest["configuration"]["graph"]["top_percent"] == 5.0 ? 160 : -1);
+  const auto pruned = std::find_if(run.steps.begin(), run.steps.end(), [](const StepRecord& step) {
+    return step.id == "graph.prune.3";
+  });
+  ASSERT_NE(pruned, run.steps.end());
+  EXPECT_EQ(run.summary["counts"]["kept"].get<std::size_t>(), pruned->details["kept"].size());
+  EXPECT_EQ(pruned->details["initial"].size(), 80U);  // 5 % of 1600
   EXPECT_EQ(run.summary["counts"]["iterations"], 6);
   EXPECT_EQ(run.summary["counts"]["rollouts"], 36);
   EXPECT_EQ(run.summary["start_grasps"]["certified"], true);
