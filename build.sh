@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# build.sh PRESET [--with PACKAGES_FILE].. [CMAKE OPTION]..: installs the Debian packages that are missing, configures and builds.
+# build.sh PRESET [--with PACKAGES_FILE].. [--configure-only | --target TARGET] [CMAKE OPTION]..: installs the Debian packages that are missing, configures and builds.
 # Quick when nothing changed. Used by run.sh, test.sh and tests/bench/run.sh.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
@@ -8,9 +8,13 @@ preset=$1
 shift
 lists=(packages.txt)
 options=()
+configure_only=false
+target=all
 while (($#)); do
   case $1 in
     --with) lists+=("$2"); shift 2 ;;
+    --configure-only) configure_only=true; shift ;;
+    --target) target=$2; shift 2 ;;
     *) options+=("$1"); shift ;;
   esac
 done
@@ -47,9 +51,10 @@ if ! cmake --preset "$preset" "${options[@]}" >"$build/configure.log" 2>&1; then
   cat "$build/configure.log" >&2
   exit 1
 fi
+if $configure_only; then exit; fi
 if [[ -t 2 ]]; then
-  cmake --build --preset "$preset" >&2
-elif ! cmake --build --preset "$preset" >"$build/build.log" 2>&1; then
+  cmake --build --preset "$preset" --target "$target" >&2
+elif ! cmake --build --preset "$preset" --target "$target" >"$build/build.log" 2>&1; then
   grep -A20 -m1 'FAILED' "$build/build.log" >&2 || tail -40 "$build/build.log" >&2
   exit 1
 fi

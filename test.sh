@@ -1,29 +1,61 @@
 #!/usr/bin/env bash
-# test.sh [--all] [CTEST ARGS]: installs what is missing, builds and runs the tests. --all adds the long tests, the trainer's,
-# the sanitizers and clang-tidy.
+# test.sh [PART] [CTEST ARGS]: installs what is missing, builds and tests. Without a part the quick suite; or one of
+#   --long      the whole suite, long tests and the trainer's among them
+#   --sanitize  the quick suite under the address and undefined-behaviour sanitizers, what is labelled determinism under the thread sanitizer
+#   --lint      formatting, luacheck, clang-tidy
+#   --cluster   jobs on an execution engine
+#   --all       these four in turn, whatever fails, with the seconds that each took
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
-all=false
-if [[ ${1:-} == --all ]]; then
-  all=true
-  shift
-fi
 jobs=$(nproc)
 
-options=(--with packages-dev.txt -DPREGRASP_TESTS=ON)
-if $all; then
-  options+=(--with packages-train.txt -DPREGRASP_TRAINER=ON)
-fi
-./build.sh release "${options[@]}"
-if ! $all; then
-  exec ctest --preset release -j "$jobs" -LE long "$@"
-fi
-ctest --preset release -j "$jobs" "$@"
-./build.sh asan-ubsan --with packages-dev.txt
-# Debian's Simbody, MRPT and Mesa keep what they allocate at start-up; leaks are looked for in our own code by valgrind-free means.
-ASAN_OPTIONS=detect_leaks=0 ctest --preset asan-ubsan -j "$jobs" -LE 'long|golden' "$@"
-./build.sh tsan --with packages-dev.txt
-TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp" ctest --preset tsan -j "$jobs" -L determinism "$@"
-# gcc's precompiled headers, which the release build has, mean nothing to clang-tidy; it needs a folder that is configured only.
-cmake --preset debug -DPREGRASP_TRAINER=ON >/dev/null
-clang-tidy -p build/debug --quiet $(git ls-files 'app/*.cc' 'render/*.cc' 'bindings/*.cc')
+quick() {
+  ./build.sh release --with packages-dev.txt -DPREGRASP_TESTS=ON
+  exec ctest --preset release -j "$jobs" -LE 'long|trainer' "$@"
+}
+
+long() {
+  ./build.sh release --with packages-dev.txt --with packages-train.txt -DPREGRASP_TESTS=ON -DPREGRASP_TRAINER=ON
+  ctest --preset release -j "$jobs" "$@"
+}
+
+sanitize() {
+  local failed=0
+  # Debian's Simbody, MRPT and Mesa keep what they allocate at start-up: leaks are not looked for.
+  ./build.sh asan-ubsan --with packages-dev.txt &&
+    ASAN_OPTIONS=detect_leaks=0 ctest --preset asan-ubsan -j "$jobs" -LE 'long|golden' "$@" || failed=1
+  ./build.sh tsan --with packages-dev.txt --target determinism_tests && ctest --preset tsan -j "$jobs" -L determinism "$@" || failed=1
+  return "$failed"
+}
+
+lint() {
+  local failed=0
+  # gcc's precompiled headers, which the release build has, mean nothing to clang-tidy; it reads a folder that is configured only.
+  ./build.sh debug --configure-only --with packages-dev.txt --with packages-train.txt -DPREGRASP_TRAINER=ON || return 1
+  tests/check_format.sh || failed=1
+  luacheck --quiet scenes lua docs || failed=1
+  find app render bindings -name '*.cc' -print0 | sort -z |
+    xargs -0 -n 1 -P "$jobs" clang-tidy -p build/debug --quiet 2> >(grep -v ' warnings\? generated' >&2) || failed=1
+  return "$failed"
+}
+
+cluster() {
+  echo "cluster: there are no such tests yet"
+}
+
+all() {
+  local failed=0 part start report=
+  for part in long sanitize lint cluster; do
+    start=$SECONDS
+    if "$0" "--$part" "$@"; then report+="$part: passed"; else report+="$part: FAILED" failed=1; fi
+    report+=" in $((SECONDS - start)) s"$'\n'
+  done
+  printf '\n%s' "$report"
+  return "$failed"
+}
+
+part=quick
+case ${1:-} in
+  --all | --long | --sanitize | --lint | --cluster) part=${1#--}; shift ;;
+esac
+"$part" "$@"

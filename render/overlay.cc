@@ -169,6 +169,11 @@ class Overlay {
     canvas_.FillDisc(anchor, width, style_.bright);
   }
 
+  static std::string FormatSpacing(double spacing) {
+    const bool metres = spacing > 0.999;
+    return FormatDouble(std::round(metres ? spacing : 100.0 * spacing)) + (metres ? " m" : " cm");
+  }
+
   static std::string FooterNote(int labels_left_out, double grid_spacing) {
     std::string note;
     if (labels_left_out > 0) {
@@ -176,10 +181,8 @@ class Overlay {
              (labels_left_out == 1 ? " label has no room" : " labels have no room");
     }
     if (grid_spacing > 0.0) {
-      const bool metres = grid_spacing > 0.999;
-      const double number = std::round(metres ? grid_spacing : 100.0 * grid_spacing);
-      note +=
-          (note.empty() ? "grid " : "   grid ") + FormatDouble(number) + (metres ? " m" : " cm");
+      note += (note.empty() ? "grid " : "   grid ") + FormatSpacing(grid_spacing) + " and " +
+              FormatSpacing(10.0 * grid_spacing);
     }
     return note;
   }

@@ -108,7 +108,7 @@ struct RenderScene {
   /// Towards the light; unset takes one from above the camera's left shoulder, so that shadows fall
   /// to the right. A film with a moving camera should set it.
   std::optional<Vector3> to_light_W;
-  bool ground = true;  ///< a floor with a grid of 1 cm, 10 cm or 1 m, told in the picture's corner
+  bool ground = true;  ///< a floor with a grid, its spacing told in the picture's corner
   std::optional<double> ground_z;  ///< its height; unset takes the lowest point of the solid bodies
   bool axes = true;                ///< the world frame's axes at the origin: x red, y green, z blue
 };

@@ -51,7 +51,8 @@ Eigen::Matrix4d ViewFromWorld(const CameraView& view) {
   return X;
 }
 
-// Of 1 mm, 1 cm, 10 cm, .., the finest spacing whose squares are not crowded at the target.
+// Of 1 cm, 10 cm, 1 m, .., the finest spacing whose squares are not crowded at the target; every
+// tenth line is bolder.
 double GridSpacing(const CameraView& view) {
   constexpr double kFewestPixels = 16.0;  // of a picture 720 high
   const double smallest = kFewestPixels / 720.0 * view.view_height();

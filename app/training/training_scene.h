@@ -45,7 +45,8 @@ struct TrainingScene {
 TrainingScene SampleTrainingScene(const SceneObject& object, Rng rng);
 
 /// Every body's pose with the surroundings moved away from the object by `relief` [m], each body
-/// against its own direction to the object at their nearest points.
+/// against its own direction to the object at their nearest points. Another part of the body that
+/// is nearly as near, off that direction, is then nearer than `relief` more than it was.
 /// @param P_O  points of the object's surface.
 std::vector<RigidTransform> MoveSurroundingsAway(const Scene& scene, const MatrixX3& P_O,
                                                  double relief);

@@ -824,7 +824,7 @@ function pregrasp.wrench(options) end
 ---@field min_normal number smallest normal part of the forces [N]
 ---@field forces Vector3[] on the object [N]: of least effort, or, if not feasible, those on which the proof ended
 ---@field status string "feasible", or the condition that fails
----@field residual number net wrench that these leave [N, torques over torque_scale]: rounding if feasible, else at least what is missing
+---@field residual number net wrench that these leave [N, torques over torque_scale]: rounding if feasible, else what lacks
 
 ---A hand pose whose fingertips touch the contacts, within cones of 60 degrees, without overlap with
 ---the scene's bodies at the start, the object and the hand itself; certified by FCL.

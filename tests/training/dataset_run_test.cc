@@ -109,8 +109,8 @@ TEST_F(DatasetRunTest, LabelsAreSharesAndKnowWhatTheyWereMadeFrom) {
       const LabelRecord& label = item.labels[l];
       EXPECT_EQ(GeneratorOf(label.contacts), l);  // thumb, index, both in turn
       EXPECT_EQ(item.contexts[label.context].relief, 0.0);
-      EXPECT_GE(label.Value(), 0.0);
-      EXPECT_LE(label.Value(), 1.0);
+      EXPECT_EQ(label.tries, config.labels.tries);
+      for (const int feasible : label.feasible) EXPECT_LE(feasible, label.tries);
     }
   }
   ItemConfig other = config;
