@@ -238,7 +238,7 @@ void ContactSolver::AddPoints(const StepConfig& config, const std::vector<BodyKe
   for (const FingerRows& rows : fingers_) rows.AddImpulse(rows.lambda, &y_[0]);
 }
 
-void ContactSolver::Solve(const StepConfig& config, const FingertipLaw& law) {
+void ContactSolver::Solve(const StepConfig& config) {
   constexpr int kMoreSweeps = 5;  // as many times, in a crowd of points
   const int max_sweeps =
       (y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many) * (crowded_ ? kMoreSweeps : 1);
@@ -251,7 +251,7 @@ void ContactSolver::Solve(const StepConfig& config, const FingertipLaw& law) {
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     double change = 0.0;
     for (FingerRows& finger : fingers_) {
-      change = std::max(change, finger.Sweep(law, &y_[0]) * finger.inv_mass);
+      change = std::max(change, finger.Sweep(&y_[0]) * finger.inv_mass);
     }
     const bool backward = alternate && sweep % 2 == 1;
     for (std::size_t i = 0; i < num_rows; ++i) {

@@ -31,7 +31,7 @@ class ContactSolver {
                  const std::vector<BodyMotion>& motions, const std::vector<Contact>& contacts);
 
   /// Velocity sweeps, then, if a pair overlaps, position-correction sweeps.
-  void Solve(const StepConfig& config, const FingertipLaw& law);
+  void Solve(const StepConfig& config);
 
   const std::vector<FingerRows>& fingers() const { return fingers_; }
 

@@ -1,6 +1,7 @@
 #include "app/dynamics/world.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <utility>
 
@@ -94,7 +95,6 @@ struct World::Impl {
   StepConfig config;
   CollisionScene collision;
   SignedDistance object_surface;
-  FingertipLaw law;
   std::vector<BodyKernel> kernels;
   WorldState initial;
 
@@ -119,7 +119,6 @@ struct World::Impl {
                          FormatDouble(kernels.back().I_P.minCoeff()));
       }
     }
-    law = FingertipLaw(scene.fingertips, kernels.at(0).mass, config.dt);
     initial.bodies = model->GetDefaultState();
     models.push_back(std::move(model));
   }
@@ -141,6 +140,11 @@ struct World::Impl {
     models.push_back(std::move(model));
   }
 
+  // Of a spring on the object [N s/m].
+  double CalcDamping(double stiffness) const {
+    return scene.fingertips.damping * std::sqrt(stiffness * kernels[0].mass);
+  }
+
   Energy CalcEnergy(const WorldState& state) {
     std::unique_ptr<SimbodyModel> model = TakeModel();
     const Energy energy = model->CalcEnergy(state.bodies, scene.gravity);
@@ -156,14 +160,15 @@ struct World::Impl {
                            &scratch->contacts);
     scratch->solver.SetContacts(config, kernels, scratch->motions, scratch->contacts, state.cache);
     for (int f = 0; f < kNumFingers; ++f) {
-      if (!state.fingers[f].on) continue;
-      scratch->solver.AddFinger(law, f, state.fingers[f], state.bodies[0], kernels[0],
-                                scratch->motions[0]);
+      const FingertipState& tip = state.fingers[f];
+      if (!tip.on) continue;
+      scratch->solver.AddFinger(FingertipLaw(scene.fingertips, tip, config.dt), f, tip,
+                                state.bodies[0], kernels[0], scratch->motions[0]);
     }
-    scratch->solver.Solve(config, law);
+    scratch->solver.Solve(config);
     for (int round = 1; round < kMaxRounds && AddOverlapping(scratch); ++round) {
       scratch->solver.AddPoints(config, kernels, scratch->motions, scratch->contacts);
-      scratch->solver.Solve(config, law);
+      scratch->solver.Solve(config);
     }
   }
 
@@ -187,7 +192,7 @@ struct World::Impl {
     solver.SaveImpulses(scratch.contacts, &state->cache);
     const RigidTransform X_WO = state->bodies[0].X_WB();
     for (const FingerRows& rows : solver.fingers()) {
-      AdvanceFinger(law, object_surface, rows, rows.CalcVelocity(solver.velocity(0)), X_WO,
+      AdvanceFinger(object_surface, rows, rows.CalcVelocity(solver.velocity(0)), X_WO,
                     &state->fingers[rows.finger]);
     }
     ++state->step;
@@ -221,8 +226,16 @@ std::vector<RigidTransform> World::GetPoses(const WorldState& state) const {
 }
 
 void World::PutFinger(WorldState& state, Finger finger, const Vector3& p_OC) const {
-  PlaceFinger(impl_->object_surface, state.bodies[0].X_WB(), p_OC,
-              &state.fingers[static_cast<int>(finger)]);
+  const double stiffness = impl_->scene.fingertips.stiffness;
+  PlaceFinger(impl_->object_surface, state.bodies[0].X_WB(), p_OC, stiffness,
+              impl_->CalcDamping(stiffness), &state.fingers[static_cast<int>(finger)]);
+}
+
+void World::SetStiffness(WorldState& state, Finger finger, double stiffness) const {
+  FingertipState& tip = state.fingers[static_cast<int>(finger)];
+  PREGRASP_CHECK(tip.on && std::isfinite(stiffness) && stiffness > 0.0, FingerName(finger),
+                 stiffness);
+  ChangeSpring(state.bodies[0], stiffness, impl_->CalcDamping(stiffness), &tip);
 }
 
 void World::LiftFinger(WorldState& state, Finger finger) const {

@@ -51,6 +51,8 @@ struct FingertipState {
   Vector3 nhat_O = Vector3::UnitZ();    ///< outward surface normal there
   Vector3 p_WF = Vector3::Zero();       ///< the fingertip point; equals X_WO p_OC while it touches
   Vector3 p_WTarget = Vector3::Zero();  ///< where the spring pulls
+  double stiffness = 0.0;               ///< k of the spring [N/m]
+  double damping = 0.0;                 ///< b of the damper [N s/m]
   Vector3 f_W = Vector3::Zero();        ///< force on the object over the last step [N]
   bool touching = false;                ///< pressed on the surface at the end of the last step
   bool slipping = false;                ///< at the cone's limit in the last step
@@ -115,8 +117,14 @@ class World {
   std::vector<RigidTransform> GetPoses(const WorldState& state) const;
 
   /// Puts a finger on the object at the surface point nearest to p_OC, its target at the point
-  /// itself.
+  /// itself, with the spring of the scene's fingertips.
   void PutFinger(WorldState& state, Finger finger, const Vector3& p_OC) const;
+
+  /// Gives a finger that is on another stiffness [N/m], above 0, and the damping that belongs to
+  /// it. The target of one that touches moves to where the new spring gives the last step's force:
+  /// p + f / k, and b v / k on top where the finger moves at v.
+  void SetStiffness(WorldState& state, Finger finger, double stiffness) const;
+
   void LiftFinger(WorldState& state, Finger finger) const;
 
   /// One step of dt; each finger that is on pulls towards its p_WTarget, taken as the target at the
