@@ -178,8 +178,8 @@ Pushed SimContacts(lua_State* L, LuaSimulation& sim) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactPoint& contact = contacts[i];
     RecordWriter(L, kContact)
-        .Set("a", bodies[contact.body_a].name)
-        .Set("b", bodies[contact.body_b].name)
+        .Set("a", bodies[contact.body_a.value].name)
+        .Set("b", bodies[contact.body_b.value].name)
         .Set("p_W", contact.p_WC)
         .Set("nhat_W", contact.nhat_W)
         .Set("f_W", contact.f_W)

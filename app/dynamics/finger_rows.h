@@ -2,7 +2,8 @@
 
 #include "app/dynamics/contact_rows.h"
 #include "app/dynamics/motion.h"
-#include "app/dynamics/world.h"
+#include "app/dynamics/world_state.h"
+#include "app/scene/scene.h"
 
 namespace pregrasp {
 

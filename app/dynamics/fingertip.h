@@ -2,7 +2,7 @@
 
 #include "app/dynamics/finger_rows.h"
 #include "app/dynamics/motion.h"
-#include "app/dynamics/world.h"
+#include "app/dynamics/world_state.h"
 #include "app/geometry/signed_distance.h"
 
 namespace pregrasp {

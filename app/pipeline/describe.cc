@@ -108,7 +108,7 @@ std::vector<std::string> DescribeStep(const World& world, const WorldState& befo
                                 story.split.limit, story.tip->slipping ? "slides" : "holds"));
   }
   for (const SupportForce& support : CalcSupportForces(world, contacts)) {
-    const std::string& name = world.scene().bodies[support.body].name;
+    const std::string& name = world.scene().bodies[support.body.value].name;
     lines.push_back(fmt::format("{} carries\t{:.2f} N", name, support.f_W.norm()));
     lines.push_back(fmt::format("{} friction\t{:.2f} of {:.2f} N, {}", name,
                                 support.split.tangential, support.split.limit,

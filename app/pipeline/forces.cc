@@ -20,9 +20,9 @@ std::vector<SupportForce> CalcSupportForces(const World& world,
   constexpr double kTouch = 1e-3;  // [N]
   constexpr double kUsedUp = 0.99;
   const std::vector<Body>& bodies = world.scene().bodies;
-  std::map<int, SupportForce> by_body;
+  std::map<BodyIndex, SupportForce> by_body;
   for (const ContactPoint& contact : contacts) {
-    if (contact.body_a != 0) continue;  // the object is body 0, and a < b
+    if (contact.body_a != kObjectBody) continue;  // which is the first body, and a < b
     SupportForce& support = by_body[contact.body_b];
     support.body = contact.body_b;
     const double normal = contact.f_W.dot(contact.nhat_W);  // on b, along the normal from a to b
@@ -30,7 +30,7 @@ std::vector<SupportForce> CalcSupportForces(const World& world,
     support.split.normal += normal;
     support.split.tangential += (contact.f_W - normal * contact.nhat_W).norm();
     support.split.limit +=
-        std::min(bodies[0].friction, bodies[contact.body_b].friction) * std::max(0.0, normal);
+        std::min(bodies[0].friction, bodies[contact.body_b.value].friction) * std::max(0.0, normal);
   }
   std::vector<SupportForce> supports;
   for (auto& [body, support] : by_body) {

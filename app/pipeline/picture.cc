@@ -189,7 +189,7 @@ void AddContactArrows(RenderScene& scene, const std::vector<ContactPoint>& conta
   constexpr double kNormalLength = 0.012;             // [m]
   constexpr float kThin = 0.0005F, kThick = 0.0012F;  // [m]
   for (const ContactPoint& contact : contacts) {
-    const double sign = contact.body_a == 0 ? -1.0 : 1.0;
+    const double sign = contact.body_a == kObjectBody ? -1.0 : 1.0;
     scene.arrows.push_back(
         {contact.p_WC, sign * kNormalLength * contact.nhat_W, kThin, NeutralColor()});
     const Vector3 v_W = sign * metres_per_newton * contact.f_W;
@@ -215,7 +215,7 @@ RenderScene PictureMaker::Compose(const WorldState& state,
   impl_->AddOverlay(scene, overlay);
   if (config.contacts) {
     for (const ContactPoint& contact : contacts) {
-      if (contact.body_a != 0 || contact.f_W.norm() < 1e-3) continue;
+      if (contact.body_a != kObjectBody || contact.f_W.norm() < 1e-3) continue;
       scene.points.push_back({contact.p_WC, 0.0022F, NeutralColor()});
     }
   }

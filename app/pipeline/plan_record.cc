@@ -305,7 +305,8 @@ JournalStep PlanRecord::MakeFrameStep(const std::string& id, const HandMotion& m
   WorldState world_state = planner_.start();
   world_state.t = task.t;
   for (std::size_t i = 0; i < world_state.bodies.size(); ++i) {
-    const RigidTransform& X_WB = task.X_WB[planner_.world().body_index(static_cast<int>(i))];
+    const MovableIndex movable{static_cast<int>(i)};
+    const RigidTransform& X_WB = task.X_WB[planner_.world().body_index(movable).value];
     world_state.bodies[i].q_WB = Quaternion(X_WB.linear());
     world_state.bodies[i].p_WB = X_WB.translation();
   }

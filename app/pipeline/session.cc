@@ -67,7 +67,7 @@ JournalStep Session::MakeStep(const std::string& id, const std::string& stage,
   step.record.t = state.t;
   for (int i = 0; i < world_->num_movables(); ++i) {
     step.record.bodies.push_back(
-        {scene().bodies[world_->body_index(i)].name, state.bodies[i].X_WB()});
+        {scene().bodies[world_->body_index(MovableIndex{i}).value].name, state.bodies[i].X_WB()});
   }
   for (int i = 0; i < kNumPlanningFingers; ++i) {
     const FingertipState& tip = state.fingers[i];
