@@ -47,8 +47,8 @@ bool StopsAtStep(lua_State* L, const std::vector<Body>& bodies, const Simulation
   if (Ask(L)) return true;
   for (const ContactPoint& contact : simulation.contacts_at(index)) {
     BeginEvent(L, "contact", state, index)
-        .Set("a", bodies[contact.body_a].name)
-        .Set("b", bodies[contact.body_b].name)
+        .Set("a", bodies[contact.body_a.value].name)
+        .Set("b", bodies[contact.body_b.value].name)
         .Set("p_W", contact.p_WC)
         .Set("penetration", std::max(0.0, -contact.phi))
         .Set("force_N", contact.f_W.norm())

@@ -70,10 +70,8 @@ void TakeShot(lua_State* L, Session& session, const Timeline::Node& node,
 void PushBody(lua_State* L, const World& world, const WorldState& state, int index) {
   const Body& body = world.scene().bodies[index];
   const RigidTransform X_WB = world.GetPoses(state)[index];
-  BodyState motion;
-  for (int i = 0; i < world.num_movables(); ++i) {
-    if (world.body_index(i) == index) motion = state.bodies[i];
-  }
+  const MovableIndex movable = world.movable_index(BodyIndex{index});
+  const BodyState motion = movable.is_none() ? BodyState{} : state.bodies[movable.value];
   RecordWriter(L, kBody)
       .Set("name", body.name)
       .Set("movable", body.movable())

@@ -122,10 +122,10 @@ void ContactRows::Set(const std::vector<BodyKernel>& kernels,
                       const std::vector<BodyMotion>& motions, const Contact& contact,
                       const std::array<const Vector3*, Manifold::kMaxPoints>& start_W,
                       std::span<PointRows> memory, BodyVelocity* y_start) {
-  const bool a_moves = contact.movable_a >= 0;
+  const bool a_moves = !contact.movable_a.is_none();
   axes_W = FrameFromNormal(contact.manifold.nhat_W);
-  first = a_moves ? contact.movable_a : contact.movable_b;
-  second = a_moves ? contact.movable_b : -1;
+  first = a_moves ? contact.movable_a.value : contact.movable_b.value;
+  second = a_moves ? contact.movable_b.value : -1;
   sign_first = a_moves ? -1.0 : 1.0;
   inv_mass_first = kernels[first].inv_mass;
   inv_mass_second = second >= 0 ? kernels[second].inv_mass : 0.0;

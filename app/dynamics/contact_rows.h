@@ -70,7 +70,7 @@ struct PointPair {
 /// The rows of one contact's points. Their linear parts are the contact's axes.
 struct ContactRows {
   Matrix3 axes_W;              ///< columns tangent 1, tangent 2, normal (from body a to b)
-  int first = 0, second = -1;  ///< movable indices; second is -1 against a fixed body
+  int first = 0, second = -1;  ///< of MovableIndex; second is -1 against a fixed body
   double sign_first = 1.0;     ///< -1 if the first is body a
   double inv_mass_first = 0.0, inv_mass_second = 0.0, inv_mass_sum = 0.0;
   double friction = 0.0;

@@ -19,8 +19,9 @@ constexpr double kMaxSinking = 1e-7;
 // corners that two pieces have in common.
 constexpr double kDepthTie = 1e-9;
 
-std::uint64_t MakeKey(int body_a, int body_b, int piece_a, int piece_b) {
-  return (static_cast<std::uint64_t>(body_a) << 52) | (static_cast<std::uint64_t>(body_b) << 40) |
+std::uint64_t MakeKey(BodyIndex body_a, BodyIndex body_b, int piece_a, int piece_b) {
+  return (static_cast<std::uint64_t>(body_a.value) << 52) |
+         (static_cast<std::uint64_t>(body_b.value) << 40) |
          (static_cast<std::uint64_t>(piece_a) << 30) |
          (static_cast<std::uint64_t>(piece_b) << kFeatureBits);
 }
@@ -41,7 +42,7 @@ void Place(const Convex& convex, const Matrix3& R_WB, const Vector3& p_WB, Place
 ContactPlane PlaneOf(const Contact& contact) {
   const Manifold& manifold = contact.manifold;
   const Matrix3 frame = FrameFromNormal(manifold.nhat_W);
-  const double to_other = contact.movable_b < 0 ? -1.0 : 1.0;
+  const double to_other = contact.movable_b.is_none() ? -1.0 : 1.0;
   const ManifoldPoint& point = manifold.points[0];
   return {point.p_W - 0.5 * to_other * point.phi * manifold.nhat_W, frame.col(0), frame.col(1),
           to_other * manifold.nhat_W};
@@ -98,10 +99,10 @@ Approach CalcApproach(const Contact& contact, const std::vector<BodyMotion>& mot
                       const std::vector<BodyStep>& steps) {
   const ContactPlane& plane = contact.manifold.plane;
   Vector3 shift = Vector3::Zero(), turn = Vector3::Zero();  // of b relative to a
-  const auto add = [&](int movable, double sign) {
-    if (movable < 0) return;
-    const BodyStep& step = steps[movable];
-    shift += sign * (step.shift_W + step.turn_W.cross(plane.p_WO - motions[movable].p_WBcm));
+  const auto add = [&](MovableIndex movable, double sign) {
+    if (movable.is_none()) return;
+    const BodyStep& step = steps[movable.value];
+    shift += sign * (step.shift_W + step.turn_W.cross(plane.p_WO - motions[movable.value].p_WBcm));
     turn += sign * step.turn_W;
   };
   add(contact.movable_a, -1.0);
@@ -146,7 +147,7 @@ std::span<const WorldState::CachedImpulse> TakePair(
 CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(margin) {
   const int num_bodies = static_cast<int>(scene.bodies.size());
   PREGRASP_CHECK(num_bodies < kMaxBodies, num_bodies);
-  int movable = 0;
+  MovableIndex movable{0};
   for (const Body& body : scene.bodies) {
     CollisionBody& collision = bodies_.emplace_back();
     collision.pieces = BuildConvexPieces(body.shape);
@@ -166,7 +167,8 @@ CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(marg
     fixed_bounds_.push_back(
         BoundsOf(body.X_WB.linear(), body.X_WB * collision.p_BBox, collision.half));
     if (body.movable()) {
-      collision.movable = movable++;
+      collision.movable = movable;
+      ++movable.value;
       collision.first_placed = num_movable_pieces_;
       num_movable_pieces_ += static_cast<int>(collision.pieces.size());
     } else {
@@ -181,20 +183,20 @@ CollisionScene::CollisionScene(const Scene& scene, double margin) : margin_(marg
   // placed_ points into bodies_, which has stopped growing; vectors keep their storage when moved.
   std::size_t next = 0;
   for (CollisionBody& collision : bodies_) {
-    if (collision.movable >= 0) continue;
+    if (!collision.movable.is_none()) continue;
     for (const Convex& piece : collision.pieces) placed_[next++].convex = &piece;
   }
   for (int a = 0; a < num_bodies; ++a) {
     for (int b = a + 1; b < num_bodies; ++b) {
       if (!scene.bodies[a].movable() && !scene.bodies[b].movable()) continue;
-      pairs_.push_back({a, b, std::min(scene.bodies[a].friction, scene.bodies[b].friction)});
+      pairs_.push_back({{a}, {b}, std::min(scene.bodies[a].friction, scene.bodies[b].friction)});
     }
   }
 }
 
-double CollisionScene::CalcReach(int body, const Vector3& p_B) const {
+double CollisionScene::CalcReach(BodyIndex body, const Vector3& p_B) const {
   double reach = 0.0;
-  for (const Convex& piece : bodies_[body].pieces) {
+  for (const Convex& piece : bodies_[body.value].pieces) {
     // The farthest corner of the piece's bounding box.
     const Vector3 p_P = piece.X_BP.inverse() * p_B;
     reach = std::max(reach, (p_P.cwiseAbs() + piece.half).norm());
@@ -209,7 +211,7 @@ void CollisionScene::PlaceMovables(const std::vector<BodyKernel>& kernels,
   scratch->bounds.resize(motions.size());
   scratch->distances.resize(motions.size());
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    const CollisionBody& body = bodies_[kernels[i].body];
+    const CollisionBody& body = bodies_[kernels[i].body.value];
     const BodyMotion& motion = motions[i];
     for (std::size_t k = 0; k < body.pieces.size(); ++k) {
       PlacedConvex& placed = scratch->pieces[body.first_placed + k];
@@ -228,7 +230,7 @@ void CollisionScene::PlaceMovables(const std::vector<BodyKernel>& kernels,
 void CollisionScene::CollidePair(const Pair& pair, double margin, Scratch* scratch,
                                  std::span<const WorldState::CachedImpulse> loaded,
                                  std::vector<Contact>* contacts) const {
-  const CollisionBody &a = bodies_[pair.a], &b = bodies_[pair.b];
+  const CollisionBody &a = bodies_[pair.a.value], &b = bodies_[pair.b.value];
   const PlacedConvex *pieces_a = Placed(a, *scratch), *pieces_b = Placed(b, *scratch);
   const Bounds& bounds_b = GetBounds(pair.b, *scratch);
   // Where each body is one piece, their bounds have met already.
@@ -262,11 +264,11 @@ void CollisionScene::FindContacts(const std::vector<BodyKernel>& kernels,
   std::span<const WorldState::CachedImpulse> cache_left = cache;
   contacts->clear();
   scratch->faces.Clear();
-  const auto distance = [&](int movable) {
-    return movable < 0 ? 0.0 : scratch->distances[movable];
+  const auto distance = [&](MovableIndex movable) {
+    return movable.is_none() ? 0.0 : scratch->distances[movable.value];
   };
   for (const Pair& pair : pairs_) {
-    const CollisionBody &a = bodies_[pair.a], &b = bodies_[pair.b];
+    const CollisionBody &a = bodies_[pair.a.value], &b = bodies_[pair.b.value];
     const double margin = margin_ + distance(a.movable) + distance(b.movable);
     if (GetBounds(pair.a, *scratch).IsWithin(margin, GetBounds(pair.b, *scratch))) {
       const auto loaded = TakePair(PairOfKey(MakeKey(pair.a, pair.b, 0, 0)), &cache_left);
@@ -302,8 +304,8 @@ void CollisionScene::MergeCoplanar(std::size_t first, Scratch* scratch,
       manifold.key = 0;  // the points' keys are whole
       RemoveCopies(points);
       // All pieces of a body move as one.
-      const PlacedConvex& a = *Placed(bodies_[contact.body_a], *scratch);
-      const PlacedConvex& b = *Placed(bodies_[contact.body_b], *scratch);
+      const PlacedConvex& a = *Placed(bodies_[contact.body_a.value], *scratch);
+      const PlacedConvex& b = *Placed(bodies_[contact.body_b.value], *scratch);
       AddFacePoints(*points, plane, Approach(a, b, manifold.nhat_W, plane), &manifold);
     }
     if (kept != i) (*contacts)[kept] = contact;

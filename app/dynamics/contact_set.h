@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "app/dynamics/convex.h"
+#include "app/dynamics/indices.h"
 #include "app/dynamics/manifold.h"
 #include "app/dynamics/motion.h"
-#include "app/dynamics/world.h"
+#include "app/dynamics/world_state.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {
@@ -23,8 +24,8 @@ std::span<const WorldState::CachedImpulse> TakePair(
 /// A contact between two bodies in one step: of two convex pieces, or of several pieces along one
 /// plane.
 struct Contact {
-  int movable_a = -1, movable_b = -1;  ///< movable index, -1 for a fixed body
-  int body_a = 0, body_b = 0;          ///< scene index, a < b
+  BodyIndex body_a, body_b;           ///< a < b
+  MovableIndex movable_a, movable_b;  ///< none for a fixed body; one is some
   double friction = 0.0;
   Manifold manifold;  ///< normal from a to b
 };
@@ -43,7 +44,9 @@ class CollisionScene {
   CollisionScene(const Scene& scene, double margin);
 
   /// Largest distance of a point of body `body` from p_B (in its frame) [m].
-  double CalcReach(int body, const Vector3& p_B) const;
+  double CalcReach(BodyIndex body, const Vector3& p_B) const;
+
+  MovableIndex movable_index(BodyIndex body) const { return bodies_.at(body.value).movable; }
 
   /// All contacts with a movable body, in an order that depends on the scene alone. Pieces count as
   /// in contact when they are nearer than the margin plus the distance they can cover in `dt`, so
@@ -63,24 +66,24 @@ class CollisionScene {
 
  private:
   struct CollisionBody {
-    int movable = -1;
+    MovableIndex movable;              ///< none for a fixed body
     Vector3 p_BBox = Vector3::Zero();  ///< centre of the bounding box in the body's frame
     Vector3 half = Vector3::Zero();
     std::vector<Convex> pieces;
     int first_placed = 0;  ///< into placed_ for a fixed body, into Scratch::pieces for a movable
   };
   struct Pair {
-    int a, b;
+    BodyIndex a, b;
     double friction;
   };
 
   /// The pieces of a body at their poses.
   const PlacedConvex* Placed(const CollisionBody& body, const Scratch& scratch) const {
-    return (body.movable < 0 ? placed_.data() : scratch.pieces.data()) + body.first_placed;
+    return (body.movable.is_none() ? placed_.data() : scratch.pieces.data()) + body.first_placed;
   }
-  const Bounds& GetBounds(int body, const Scratch& scratch) const {
-    const int movable = bodies_[body].movable;
-    return movable < 0 ? fixed_bounds_[body] : scratch.bounds[movable];
+  const Bounds& GetBounds(BodyIndex body, const Scratch& scratch) const {
+    const MovableIndex movable = bodies_[body.value].movable;
+    return movable.is_none() ? fixed_bounds_[body.value] : scratch.bounds[movable.value];
   }
   void PlaceMovables(const std::vector<BodyKernel>& kernels, const std::vector<BodyMotion>& motions,
                      double dt, Scratch* scratch) const;
@@ -92,7 +95,7 @@ class CollisionScene {
   double margin_;
   std::vector<CollisionBody> bodies_;
   std::vector<PlacedConvex> placed_;  ///< pieces of fixed bodies
-  std::vector<Bounds> fixed_bounds_;  ///< by scene index; movables unset
+  std::vector<Bounds> fixed_bounds_;  ///< by body; movables unset
   std::vector<Pair> pairs_;
   int num_movable_pieces_ = 0;
 };

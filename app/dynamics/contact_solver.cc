@@ -238,7 +238,7 @@ void ContactSolver::AddPoints(const StepConfig& config, const std::vector<BodyKe
   for (const FingerRows& rows : fingers_) rows.AddImpulse(rows.lambda, &y_[0]);
 }
 
-void ContactSolver::Solve(const StepConfig& config, const FingertipLaw& law) {
+Convergence ContactSolver::Solve(const StepConfig& config) {
   constexpr int kMoreSweeps = 5;  // as many times, in a crowd of points
   const int max_sweeps =
       (y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many) * (crowded_ ? kMoreSweeps : 1);
@@ -248,25 +248,43 @@ void ContactSolver::Solve(const StepConfig& config, const FingertipLaw& law) {
   // travels in the order of the contacts.
   const bool alternate = y_.size() == 1;
   const std::size_t num_rows = rows_.size();
-  for (int sweep = 0; sweep < max_sweeps; ++sweep) {
+  Convergence convergence{false, 0.0};
+  for (int sweep = 0; sweep < max_sweeps && !convergence.converged; ++sweep) {
     double change = 0.0;
     for (FingerRows& finger : fingers_) {
-      change = std::max(change, finger.Sweep(law, &y_[0]) * finger.inv_mass);
+      change = std::max(change, finger.Sweep(&y_[0]) * finger.inv_mass);
     }
     const bool backward = alternate && sweep % 2 == 1;
     for (std::size_t i = 0; i < num_rows; ++i) {
       const ContactRows& rows = rows_[backward ? num_rows - 1 - i : i];
       change = std::max(change, SweepRows(backward, rows, y_.data()) * rows.inv_mass_lighter());
     }
-    if (stop.IsMet(change)) break;
-    if (sweep % 2 == 1 && sweep + 1 < max_sweeps) Accelerate(sweep > 1 ? CalcStretch() : 0.0);
+    convergence.converged = stop.IsMet(change);
+    if (!convergence.converged && sweep % 2 == 1 && sweep + 1 < max_sweeps) {
+      Accelerate(sweep > 1 ? CalcStretch() : 0.0);
+    }
   }
+  if (!convergence.converged) convergence.residual = CalcApproach();
   z_.assign(y_.size(), {});
   double least_phi = 0.0;
   for (const ContactRows& rows : rows_) {
     for (const PointRows& point : rows.points) least_phi = std::min(least_phi, point.phi);
   }
   if (least_phi < -kCorrectionSlop) CorrectPositions(config, max_sweeps);
+  return convergence;
+}
+
+// The fastest approach that is left, beyond what the points may [m/s].
+double ContactSolver::CalcApproach() const {
+  double approach = 0.0;
+  for (const ContactRows& rows : rows_) {
+    VisitRelativeVelocity(rows, y_.data(), [&](auto v) {
+      for (const PointRows& point : rows.points) {
+        approach = std::max(approach, -v.GetNormal(point, point.bias));
+      }
+    });
+  }
+  return approach;
 }
 
 // How far to go on, as a share of the progress since the last pair of sweeps (Anderson's
@@ -351,10 +369,11 @@ void ContactSolver::SumImpulses(const std::vector<BodyMotion>& motions,
                                 const std::vector<Contact>& contacts,
                                 std::vector<BodyImpulse>* impulses) const {
   impulses->assign(motions.size(), {});
-  const auto add = [&](int i, const Vector3& p_W, const Vector3& impulse_W,
+  const auto add = [&](MovableIndex movable, const Vector3& p_W, const Vector3& impulse_W,
                        const Vector3& correction_W) {
-    BodyImpulse& sum = (*impulses)[i];
-    const Vector3 r_W = p_W - motions[i].p_WBcm;
+    if (movable.is_none()) return;
+    BodyImpulse& sum = (*impulses)[movable.value];
+    const Vector3 r_W = p_W - motions[movable.value].p_WBcm;
     sum.linear += impulse_W;
     sum.angular += r_W.cross(impulse_W);
     sum.linear_correction += correction_W;
@@ -366,12 +385,12 @@ void ContactSolver::SumImpulses(const std::vector<BodyMotion>& motions,
       const Vector3& p_W = contacts[c].manifold.points[k].p_W;
       const Vector3 impulse = rows.ToWorld(rows.points[k].lambda);
       const Vector3 correction = rows.axes_W.col(2) * rows.points[k].correction;
-      if (contacts[c].movable_a >= 0) add(contacts[c].movable_a, p_W, -impulse, -correction);
-      if (contacts[c].movable_b >= 0) add(contacts[c].movable_b, p_W, impulse, correction);
+      add(contacts[c].movable_a, p_W, -impulse, -correction);
+      add(contacts[c].movable_b, p_W, impulse, correction);
     }
   }
   for (const FingerRows& row : fingers_) {
-    add(0, motions[0].p_WBcm + row.r_W, row.axes_W * row.lambda, Vector3::Zero());
+    add(MovableIndex{0}, motions[0].p_WBcm + row.r_W, row.axes_W * row.lambda, Vector3::Zero());
   }
 }
 

@@ -8,7 +8,8 @@
 #include "app/dynamics/contact_set.h"
 #include "app/dynamics/finger_rows.h"
 #include "app/dynamics/motion.h"
-#include "app/dynamics/world.h"
+#include "app/dynamics/step_config.h"
+#include "app/dynamics/world_state.h"
 
 namespace pregrasp {
 
@@ -31,7 +32,7 @@ class ContactSolver {
                  const std::vector<BodyMotion>& motions, const std::vector<Contact>& contacts);
 
   /// Velocity sweeps, then, if a pair overlaps, position-correction sweeps.
-  void Solve(const StepConfig& config, const FingertipLaw& law);
+  Convergence Solve(const StepConfig& config);
 
   const std::vector<FingerRows>& fingers() const { return fingers_; }
 
@@ -53,6 +54,7 @@ class ContactSolver {
 
  private:
   void SetBias(const StepConfig& config, const ContactRows& rows) const;
+  double CalcApproach() const;
   double CalcStretch() const;
   void Accelerate(double stretch);
   void CorrectPositions(const StepConfig& config, int max_sweeps);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/core/check.h"
+
 namespace pregrasp {
 namespace {
 
@@ -24,20 +26,23 @@ bool CutToCap(double max_impulse, Vector3* lambda) {
 
 }  // namespace
 
-FingertipLaw::FingertipLaw(const FingertipConfig& config, double object_mass, double dt_in)
-    : stiffness(config.stiffness),
-      damping(config.damping * std::sqrt(config.stiffness * object_mass)),
+FingertipLaw::FingertipLaw(const FingertipConfig& config, const FingertipState& tip, double dt_in)
+    : stiffness(tip.stiffness),
+      damping(tip.damping),
       friction(config.friction),
       dt(dt_in),
       inv_dt(1.0 / dt),
       max_impulse(dt * config.max_force),
       gain(stiffness / (dt * stiffness + damping)),
       gamma(1.0 / (dt * (dt * stiffness + damping))),
-      inv_gamma(1.0 / gamma) {}
+      inv_gamma(1.0 / gamma) {
+  PREGRASP_CHECK(stiffness > 0.0 && damping >= 0.0, stiffness, damping);
+}
 
-void FingerRows::Set(const FingertipLaw& law, int index, const FingertipState& tip,
+void FingerRows::Set(const FingertipLaw& finger_law, int index, const FingertipState& tip,
                      const BodyState& state, const BodyKernel& kernel, const BodyMotion& object) {
   finger = index;
+  law = finger_law;
   sliding = capped = false;
   inv_mass = kernel.inv_mass;
   const Matrix3 R_WC = FrameFromNormal(object.R_WB * tip.nhat_O);
@@ -87,7 +92,7 @@ void FingerRows::SetEffectiveMass(double gamma) {
 // keeps a vector in the cone, so the result is in both). Each step is scaled so that its fixed
 // point is the exact law: one scale for both tangents where the cone holds, one for all three rows
 // where the cap does.
-double FingerRows::Sweep(const FingertipLaw& law, BodyVelocity* y) {
+double FingerRows::Sweep(BodyVelocity* y) {
   Vector3 v = CalcVelocity(*y) + law.gamma * lambda - target;
   v[0] += gap_velocity;
   Vector3 next = lambda - inv_K * v;

@@ -2,11 +2,12 @@
 
 #include "app/dynamics/contact_rows.h"
 #include "app/dynamics/motion.h"
-#include "app/dynamics/world.h"
+#include "app/dynamics/world_state.h"
+#include "app/scene/scene.h"
 
 namespace pregrasp {
 
-/// The spring of one scene's fingers, and what follows from it for a step of `dt`.
+/// The law of one finger, and what follows from it for a step of `dt`.
 struct FingertipLaw {
   double stiffness = 0.0;  ///< k [N/m]
   double damping = 0.0;    ///< b [N s/m]
@@ -19,13 +20,15 @@ struct FingertipLaw {
   double inv_gamma = 0.0;
 
   FingertipLaw() = default;
-  FingertipLaw(const FingertipConfig& config, double object_mass, double dt);
+  /// @param tip  a finger that is on.
+  FingertipLaw(const FingertipConfig& config, const FingertipState& tip, double dt);
 };
 
 /// A finger's contact with the object: rows along the inward normal and two tangents, with the
 /// compliance of spring and damper on all three (see app/dynamics/README.md).
 struct FingerRows {
   int finger = 0;
+  FingertipLaw law;
   Matrix3 axes_W;         ///< columns inward normal, tangent 1, tangent 2
   Matrix3 A;              ///< columns the rows' angular parts, in the object's w_P
   double inv_mass = 0.0;  ///< of the object
@@ -39,8 +42,8 @@ struct FingerRows {
   bool capped = false;               ///< held by the force cap in the last sweep
 
   /// Sets all of it for a step of the object from `state`, whose pose `object` holds too.
-  void Set(const FingertipLaw& law, int index, const FingertipState& tip, const BodyState& state,
-           const BodyKernel& kernel, const BodyMotion& object);
+  void Set(const FingertipLaw& finger_law, int index, const FingertipState& tip,
+           const BodyState& state, const BodyKernel& kernel, const BodyMotion& object);
 
   /// Velocity of the object's point along the rows.
   Vector3 CalcVelocity(const BodyVelocity& y) const {
@@ -54,7 +57,7 @@ struct FingerRows {
   }
 
   /// One Gauss-Seidel update; returns the largest change of an impulse [N s].
-  double Sweep(const FingertipLaw& law, BodyVelocity* y);
+  double Sweep(BodyVelocity* y);
 
  private:
   void SetEffectiveMass(double gamma);

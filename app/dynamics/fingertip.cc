@@ -39,15 +39,27 @@ void SlipOverSurface(const SignedDistance& surface, const RigidTransform& X_WO,
 }  // namespace
 
 void PlaceFinger(const SignedDistance& surface, const RigidTransform& X_WO, const Vector3& p_OC,
-                 FingertipState* finger) {
+                 double stiffness, double damping, FingertipState* finger) {
   *finger = {};
   finger->on = true;
+  finger->stiffness = stiffness;
+  finger->damping = damping;
   finger->p_OC = surface.Project(p_OC, &finger->nhat_O);
   finger->p_WF = finger->p_WTarget = X_WO * finger->p_OC;
 }
 
-void AdvanceFinger(const FingertipLaw& law, const SignedDistance& surface, const FingerRows& rows,
-                   const Vector3& v_object, const RigidTransform& X_WO, FingertipState* finger) {
+void ChangeSpring(const BodyState& object, double stiffness, double damping,
+                  FingertipState* finger) {
+  finger->stiffness = stiffness;
+  finger->damping = damping;
+  if (!finger->touching) return;
+  const Vector3 v_WF = object.v_WB + object.w_WB.cross(finger->p_WF - object.p_WB);
+  finger->p_WTarget = finger->p_WF + (finger->f_W + damping * v_WF) / stiffness;
+}
+
+void AdvanceFinger(const SignedDistance& surface, const FingerRows& rows, const Vector3& v_object,
+                   const RigidTransform& X_WO, FingertipState* finger) {
+  const FingertipLaw& law = rows.law;
   finger->f_W = rows.axes_W * (law.inv_dt * rows.lambda);
   finger->slipping = false;
   if (rows.lambda[0] <= 0.0) {

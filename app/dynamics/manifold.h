@@ -9,7 +9,7 @@
 
 #include "app/core/math.h"
 #include "app/dynamics/convex.h"
-#include "app/dynamics/world.h"
+#include "app/dynamics/world_state.h"
 
 namespace pregrasp {
 

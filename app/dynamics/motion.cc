@@ -5,8 +5,8 @@
 
 namespace pregrasp {
 
-BodyKernel MakeBodyKernel(int body, double mass, const Vector3& p_BoBcm, const Matrix3& I_BBcm,
-                          double reach) {
+BodyKernel MakeBodyKernel(BodyIndex body, double mass, const Vector3& p_BoBcm,
+                          const Matrix3& I_BBcm, double reach) {
   BodyKernel kernel;
   kernel.body = body;
   kernel.mass = mass;

@@ -3,13 +3,14 @@
 #include <vector>
 
 #include "app/core/math.h"
+#include "app/dynamics/indices.h"
 
 namespace pregrasp {
 
 /// The constants of one movable body, as the inner loop uses them. P is the body's principal frame:
 /// its origin is the centre of mass, its axes are the principal axes of inertia.
 struct BodyKernel {
-  int body = 0;       ///< scene index
+  BodyIndex body;
   double mass = 0.0;  ///< [kg]
   Vector3 p_BoBcm = Vector3::Zero();
   Matrix3 R_BP = Matrix3::Identity();
@@ -23,8 +24,8 @@ struct BodyKernel {
 };
 
 /// Builds the derived constants. Axes that are principal already are kept exactly.
-BodyKernel MakeBodyKernel(int body, double mass, const Vector3& p_BoBcm, const Matrix3& I_BBcm,
-                          double reach);
+BodyKernel MakeBodyKernel(BodyIndex body, double mass, const Vector3& p_BoBcm,
+                          const Matrix3& I_BBcm, double reach);
 
 /// Where a movable body is within one step and how it moves before the contacts act.
 struct BodyMotion {

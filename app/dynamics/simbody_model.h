@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/dynamics/motion.h"
-#include "app/dynamics/world.h"
+#include "app/dynamics/world_state.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {

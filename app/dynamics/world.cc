@@ -1,6 +1,7 @@
 #include "app/dynamics/world.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <utility>
 
@@ -31,14 +32,6 @@ struct StepScratch {
 StepScratch& GetThreadScratch() {
   thread_local StepScratch scratch;
   return scratch;
-}
-
-void RequireRange(const char* field, double value, double low, double high) {
-  if (!(value >= low && value <= high)) {
-    throw InputError("dynamics", field,
-                     "a number from " + FormatDouble(low) + " to " + FormatDouble(high),
-                     FormatDouble(value));
-  }
 }
 
 // v and w from the state, gravity's impulse added.
@@ -79,22 +72,11 @@ void Advance(const BodyKernel& kernel, const BodyMotion& motion, const BodyVeloc
 
 }  // namespace
 
-void StepConfig::Validate() const {
-  RequireRange("dt", dt, 1e-6, 0.02);
-  RequireRange("tolerance", tolerance, 0.0, 1.0);
-  RequireRange("tolerance_many", tolerance_many, 0.0, 1.0);
-  RequireRange("max_sweeps", max_sweeps, 1, 1e6);
-  RequireRange("max_sweeps_many", max_sweeps_many, 1, 1e6);
-  RequireRange("margin", margin, 0.0, 0.01);
-  RequireRange("restitution", restitution, 0.0, 1.0);
-}
-
 struct World::Impl {
   Scene scene;
   StepConfig config;
   CollisionScene collision;
   SignedDistance object_surface;
-  FingertipLaw law;
   std::vector<BodyKernel> kernels;
   WorldState initial;
 
@@ -108,18 +90,17 @@ struct World::Impl {
         collision(scene, config.margin),
         object_surface(scene.object().shape) {
     auto model = std::make_unique<SimbodyModel>(scene);
-    for (int b = 0; b < static_cast<int>(scene.bodies.size()); ++b) {
-      if (!scene.bodies[b].movable()) continue;
+    for (BodyIndex b; b.value < static_cast<int>(scene.bodies.size()); ++b.value) {
+      const Body& body = scene.bodies[b.value];
+      if (!body.movable()) continue;
       const MassProperties mass = model->GetMassProperties(static_cast<int>(kernels.size()));
       kernels.push_back(MakeBodyKernel(b, mass.mass, mass.p_BoBcm, mass.I_BBcm,
                                        collision.CalcReach(b, mass.p_BoBcm)));
       if (!(kernels.back().I_P.minCoeff() > 0.0)) {
-        throw InputError(scene.bodies[b].where, scene.bodies[b].name + ".inertia",
-                         "moments above 0 about every axis",
+        throw InputError(body.where, body.name + ".inertia", "moments above 0 about every axis",
                          FormatDouble(kernels.back().I_P.minCoeff()));
       }
     }
-    law = FingertipLaw(scene.fingertips, kernels.at(0).mass, config.dt);
     initial.bodies = model->GetDefaultState();
     models.push_back(std::move(model));
   }
@@ -141,6 +122,11 @@ struct World::Impl {
     models.push_back(std::move(model));
   }
 
+  // Of a spring on the object [N s/m].
+  double CalcDamping(double stiffness) const {
+    return scene.fingertips.damping * std::sqrt(stiffness * kernels[0].mass);
+  }
+
   Energy CalcEnergy(const WorldState& state) {
     std::unique_ptr<SimbodyModel> model = TakeModel();
     const Energy energy = model->CalcEnergy(state.bodies, scene.gravity);
@@ -150,21 +136,23 @@ struct World::Impl {
 
   // Contacts and fingers, from scratch->motions to the solver's velocities. Where a point that was
   // left out would overlap after the step, they are solved again with that point.
-  void SolveContacts(const WorldState& state, StepScratch* scratch) const {
+  Convergence SolveContacts(const WorldState& state, StepScratch* scratch) const {
     constexpr int kMaxRounds = 6;
     collision.FindContacts(kernels, scratch->motions, state.cache, config.dt, &scratch->collision,
                            &scratch->contacts);
     scratch->solver.SetContacts(config, kernels, scratch->motions, scratch->contacts, state.cache);
     for (int f = 0; f < kNumFingers; ++f) {
-      if (!state.fingers[f].on) continue;
-      scratch->solver.AddFinger(law, f, state.fingers[f], state.bodies[0], kernels[0],
-                                scratch->motions[0]);
+      const FingertipState& tip = state.fingers[f];
+      if (!tip.on) continue;
+      scratch->solver.AddFinger(FingertipLaw(scene.fingertips, tip, config.dt), f, tip,
+                                state.bodies[0], kernels[0], scratch->motions[0]);
     }
-    scratch->solver.Solve(config, law);
+    Convergence convergence = scratch->solver.Solve(config);
     for (int round = 1; round < kMaxRounds && AddOverlapping(scratch); ++round) {
       scratch->solver.AddPoints(config, kernels, scratch->motions, scratch->contacts);
-      scratch->solver.Solve(config, law);
+      convergence = scratch->solver.Solve(config);
     }
+    return convergence;
   }
 
   // Adds the points that the velocities found so far make overlap. Returns whether there are any.
@@ -187,7 +175,7 @@ struct World::Impl {
     solver.SaveImpulses(scratch.contacts, &state->cache);
     const RigidTransform X_WO = state->bodies[0].X_WB();
     for (const FingerRows& rows : solver.fingers()) {
-      AdvanceFinger(law, object_surface, rows, rows.CalcVelocity(solver.velocity(0)), X_WO,
+      AdvanceFinger(object_surface, rows, rows.CalcVelocity(solver.velocity(0)), X_WO,
                     &state->fingers[rows.finger]);
     }
     ++state->step;
@@ -208,7 +196,12 @@ World::World(World&&) noexcept = default;
 const Scene& World::scene() const { return impl_->scene; }
 const StepConfig& World::config() const { return impl_->config; }
 int World::num_movables() const { return static_cast<int>(impl_->kernels.size()); }
-int World::body_index(int movable) const { return impl_->kernels.at(movable).body; }
+BodyIndex World::body_index(MovableIndex movable) const {
+  return impl_->kernels.at(movable.value).body;
+}
+MovableIndex World::movable_index(BodyIndex body) const {
+  return impl_->collision.movable_index(body);
+}
 
 WorldState World::InitialState() const { return impl_->initial; }
 
@@ -216,20 +209,30 @@ std::vector<RigidTransform> World::GetPoses(const WorldState& state) const {
   std::vector<RigidTransform> X_WB;
   X_WB.reserve(impl_->scene.bodies.size());
   for (const Body& body : impl_->scene.bodies) X_WB.push_back(body.X_WB);
-  for (int i = 0; i < num_movables(); ++i) X_WB[body_index(i)] = state.bodies[i].X_WB();
+  for (int i = 0; i < num_movables(); ++i) {
+    X_WB[body_index(MovableIndex{i}).value] = state.bodies[i].X_WB();
+  }
   return X_WB;
 }
 
 void World::PutFinger(WorldState& state, Finger finger, const Vector3& p_OC) const {
-  PlaceFinger(impl_->object_surface, state.bodies[0].X_WB(), p_OC,
-              &state.fingers[static_cast<int>(finger)]);
+  const double stiffness = impl_->scene.fingertips.stiffness;
+  PlaceFinger(impl_->object_surface, state.bodies[0].X_WB(), p_OC, stiffness,
+              impl_->CalcDamping(stiffness), &state.fingers[static_cast<int>(finger)]);
+}
+
+void World::SetStiffness(WorldState& state, Finger finger, double stiffness) const {
+  FingertipState& tip = state.fingers[static_cast<int>(finger)];
+  PREGRASP_CHECK(tip.on && std::isfinite(stiffness) && stiffness > 0.0, FingerName(finger),
+                 stiffness);
+  ChangeSpring(state.bodies[0], stiffness, impl_->CalcDamping(stiffness), &tip);
 }
 
 void World::LiftFinger(WorldState& state, Finger finger) const {
   state.fingers[static_cast<int>(finger)] = {};
 }
 
-void World::Step(WorldState& state, std::vector<ContactPoint>* contacts) const {
+Convergence World::Step(WorldState& state, std::vector<ContactPoint>* contacts) const {
   const Impl& impl = *impl_;
   StepScratch& scratch = GetThreadScratch();
   const int n = num_movables();
@@ -238,17 +241,18 @@ void World::Step(WorldState& state, std::vector<ContactPoint>* contacts) const {
     Predict(impl.kernels[i], state.bodies[i], impl.scene.gravity, impl.config.dt,
             &scratch.motions[i]);
   }
-  impl.SolveContacts(state, &scratch);
+  const Convergence convergence = impl.SolveContacts(state, &scratch);
   for (int i = 0; i < n; ++i) {
     Advance(impl.kernels[i], scratch.motions[i], scratch.solver.velocity(i),
             scratch.solver.correction(i), impl.config.dt, &state.bodies[i]);
   }
   impl.EndStep(scratch, &state, contacts);
+  return convergence;
 }
 
 StepTrace World::StepWithTrace(WorldState& state) const {
   StepTrace trace;
-  Step(state, &trace.contacts);
+  trace.convergence = Step(state, &trace.contacts);
   for (const ContactPoint& contact : trace.contacts) {
     trace.max_penetration = std::max(trace.max_penetration, -contact.phi);
   }
@@ -258,16 +262,17 @@ StepTrace World::StepWithTrace(WorldState& state) const {
   return trace;
 }
 
-void World::StepWithSimbody(WorldState& state, std::vector<ContactPoint>* contacts) const {
+Convergence World::StepWithSimbody(WorldState& state, std::vector<ContactPoint>* contacts) const {
   const Impl& impl = *impl_;
   StepScratch& scratch = GetThreadScratch();
   std::unique_ptr<SimbodyModel> model = impl_->TakeModel();
   model->Predict(state.bodies, impl.kernels, impl.scene.gravity, impl.config.dt, &scratch.motions);
-  impl.SolveContacts(state, &scratch);
+  const Convergence convergence = impl.SolveContacts(state, &scratch);
   scratch.solver.SumImpulses(scratch.motions, scratch.contacts, &scratch.impulses);
   model->Advance(scratch.impulses, impl.config.dt, &state.bodies);
   impl_->ReturnModel(std::move(model));
   impl.EndStep(scratch, &state, contacts);
+  return convergence;
 }
 
 double World::CalcEnergy(const WorldState& state) const {

@@ -14,8 +14,8 @@ void SetWorldFacts(StepFacts& facts, const World& world, const WorldState& state
   facts.bodies.clear();
   for (int i = 0; i < world.num_movables(); ++i) {
     const BodyState& body = state.bodies[i];
-    facts.bodies.push_back({world.scene().bodies[world.body_index(i)].name, body.p_WB, body.q_WB,
-                            body.w_WB, body.v_WB});
+    facts.bodies.push_back({world.scene().bodies[world.body_index(MovableIndex{i}).value].name,
+                            body.p_WB, body.q_WB, body.w_WB, body.v_WB});
   }
   facts.fingers.clear();
   for (int i = 0; i < kNumFingers; ++i) {
@@ -25,8 +25,8 @@ void SetWorldFacts(StepFacts& facts, const World& world, const WorldState& state
   }
   facts.contacts.clear();
   for (const ContactPoint& contact : contacts) {
-    facts.contacts.push_back({contact.body_a, contact.body_b, contact.p_WC, contact.nhat_W,
-                              contact.f_W, contact.phi, contact.v_slip_W});
+    facts.contacts.push_back({contact.body_a.value, contact.body_b.value, contact.p_WC,
+                              contact.nhat_W, contact.f_W, contact.phi, contact.v_slip_W});
   }
 }
 

@@ -14,7 +14,8 @@ WorldState StateOfFrame(const Application& a, const MotionFrameTask& task) {
   WorldState state = a.next.start;
   state.t = task.t;
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    const RigidTransform& X_WB = task.X_WB[a.job.world().body_index(static_cast<int>(i))];
+    const RigidTransform& X_WB =
+        task.X_WB[a.job.world().body_index(MovableIndex{static_cast<int>(i)}).value];
     state.bodies[i].q_WB = Quaternion(X_WB.linear());
     state.bodies[i].p_WB = X_WB.translation();
   }

@@ -7,11 +7,12 @@
 namespace pregrasp {
 namespace {
 
-// Of movable `i`, which is the scene's body world.body_index(i).
-Motion CalcMotion(const World& world, int i, const WorldState& from, const WorldState& to) {
-  const Body& body = world.scene().bodies[world.body_index(i)];
+Motion CalcMotion(const World& world, MovableIndex movable, const WorldState& from,
+                  const WorldState& to) {
+  const Body& body = world.scene().bodies[world.body_index(movable).value];
   const Vector3& p_BoBcm = body.mass_properties->p_BoBcm;
-  const RigidTransform X_from = from.bodies[i].X_WB(), X_to = to.bodies[i].X_WB();
+  const RigidTransform X_from = from.bodies[movable.value].X_WB(),
+                       X_to = to.bodies[movable.value].X_WB();
   return {(X_to * p_BoBcm - X_from * p_BoBcm).norm(), RotationAngle(X_from.linear(), X_to.linear()),
           body.name};
 }
@@ -19,7 +20,7 @@ Motion CalcMotion(const World& world, int i, const WorldState& from, const World
 }  // namespace
 
 Motion CalcObjectMotion(const World& world, const WorldState& from, const WorldState& to) {
-  return CalcMotion(world, 0, from, to);
+  return CalcMotion(world, MovableIndex{0}, from, to);
 }
 
 SettleResult Settle(const World& world, WorldState& state, double seconds) {
@@ -30,7 +31,7 @@ SettleResult Settle(const World& world, WorldState& state, double seconds) {
     ThrowIfInterrupted();
     world.Step(state);
     for (int i = 0; i < world.num_movables(); ++i) {
-      const Motion motion = CalcMotion(world, i, start, state);
+      const Motion motion = CalcMotion(world, MovableIndex{i}, start, state);
       result.largest.rotated = std::max(result.largest.rotated, motion.rotated);
       if (motion.moved >= result.largest.moved) {
         result.largest.moved = motion.moved;

@@ -9,8 +9,8 @@ nlohmann::ordered_json TraceToJson(const StepTrace& trace, const Scene& scene) {
   nlohmann::ordered_json value;
   nlohmann::ordered_json contacts = nlohmann::ordered_json::array();
   for (const ContactPoint& contact : trace.contacts) {
-    contacts.push_back({{"a", scene.bodies[contact.body_a].name},
-                        {"b", scene.bodies[contact.body_b].name},
+    contacts.push_back({{"a", scene.bodies[contact.body_a.value].name},
+                        {"b", scene.bodies[contact.body_b.value].name},
                         {"p_W", ToJson(contact.p_WC)},
                         {"nhat_W", ToJson(contact.nhat_W)},
                         {"f_W", ToJson(contact.f_W)},

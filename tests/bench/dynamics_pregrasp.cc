@@ -2,61 +2,64 @@
 #include <ctime>
 
 #include "app/core/thread_pool.h"
-#include "app/dynamics/rollout.h"
 #include "app/dynamics/world.h"
 #include "tests/bench/dynamics_scenes.h"
 
 namespace pregrasp {
+namespace {
+
+WorldState StartOf(const World& world, const DynamicsCase& c) {
+  WorldState state = world.InitialState();
+  if (c.finger) world.PutFinger(state, Finger::kIndex, c.p_OC);
+  return state;
+}
+
+// The case's two seconds, the finger's target going `share` of the way. Returns the steps.
+int Run(const World& world, const DynamicsCase& c, double share, WorldState* state) {
+  FingertipState& finger = state->fingers[static_cast<int>(Finger::kIndex)];
+  const Vector3 p_WC = finger.p_WTarget;
+  const int steps = static_cast<int>(std::lround(DynamicsCase::kSeconds / world.config().dt));
+  for (int i = 1; i <= steps; ++i) {
+    if (c.finger) {
+      finger.p_WTarget = p_WC + share * (c.TargetAt(i * world.config().dt, p_WC) - p_WC);
+    }
+    world.Step(*state);
+  }
+  return steps;
+}
+
+}  // namespace
 
 EngineRun RunPregrasp(const DynamicsCase& c) {
   const World world(c.scene);
-  WorldState state = world.InitialState();
-  if (c.finger) world.PutFinger(state, Finger::kIndex, c.p_OC);
-  FingertipState& finger = state.fingers[static_cast<int>(Finger::kIndex)];
-  const Vector3 p_WC_start = finger.p_WTarget;
+  WorldState state = StartOf(world, c);
   EngineRun run;
-  run.steps = static_cast<int>(std::lround(DynamicsCase::kSeconds / world.config().dt));
   const double start = ThreadCpuSeconds();
-  for (int i = 0; i < run.steps; ++i) {
-    if (c.finger) finger.p_WTarget = c.TargetAt((i + 1) * world.config().dt, p_WC_start);
-    world.Step(state);
-  }
+  run.steps = Run(world, c, 1.0, &state);
   run.cpu_seconds = ThreadCpuSeconds() - start;
   run.X_WO = state.bodies[0].X_WB();
   return run;
 }
 
 BatchRun RunPregraspBatch(const DynamicsCase& c, int threads) {
-  constexpr int kNumRollouts = 256, kNumKnots = 20;
+  constexpr int kNumRollouts = 256;
   const World world(c.scene);
   ThreadPool pool(threads);
-  RolloutConfig config;
-  config.steps = static_cast<int>(DynamicsCase::kSeconds / world.config().dt);
-  config.steps_per_knot = config.steps / kNumKnots;
-  RolloutInput input;
-  input.start = world.InitialState();
-  world.PutFinger(input.start, Finger::kIndex, c.p_OC);
-  const int index = static_cast<int>(Finger::kIndex);
-  const Vector3 p_WC = input.start.fingers[index].p_WTarget;
-  std::vector<RolloutInput> inputs;
-  for (int i = 0; i < kNumRollouts; ++i) {
-    const double share = 0.5 + 0.5 * i / kNumRollouts;  // of the way
-    input.p_WTargets[index].clear();
-    for (int k = 1; k <= kNumKnots; ++k) {
-      const Vector3 p_WTarget = c.TargetAt(DynamicsCase::kSeconds * k / kNumKnots, p_WC);
-      input.p_WTargets[index].push_back(p_WC + share * (p_WTarget - p_WC));
-    }
-    inputs.push_back(input);
-  }
-  SimulateRollouts(world, config, inputs, &pool);  // every thread's memory grows
+  const WorldState start_state = StartOf(world, c);
   BatchRun run;
+  run.p_WO.resize(kNumRollouts);
+  const auto roll_out = [&](int i, int) {
+    WorldState state = start_state;
+    Run(world, c, 0.5 + 0.5 * i / kNumRollouts, &state);
+    run.p_WO[i] = state.bodies[0].p_WB;
+  };
+  pool.ParallelFor(kNumRollouts, roll_out);  // every thread's memory grows
   const std::clock_t cpu_start = std::clock();
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<RolloutResult> results = SimulateRollouts(world, config, inputs, &pool);
+  pool.ParallelFor(kNumRollouts, roll_out);
   run.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-  for (const RolloutResult& result : results) run.p_WO.push_back(result.end.bodies[0].p_WB);
   return run;
 }
 

@@ -1,12 +1,15 @@
 // The same bytes for any number of threads.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "app/core/sha256.h"
-#include "app/dynamics/rollout.h"
+#include "app/core/thread_pool.h"
+#include "app/dynamics/world.h"
 #include "tests/dynamics/scenes.h"
 
 namespace pregrasp {
@@ -21,102 +24,96 @@ World MakeCrowdedWorld() {
                    At(0.02, 0.2, 0), 0.2, 0.4)}));
 }
 
-std::vector<RolloutInput> MakePushes(const World& world, int count) {
-  std::vector<RolloutInput> inputs;
-  for (int i = 0; i < count; ++i) {
-    Rng rng(i);
-    RolloutInput& input = inputs.emplace_back();
-    input.start = world.InitialState();
-    for (const Finger finger : {Finger::kThumb, Finger::kIndex}) {
-      const double angle = rng.Uniform(0.0, 2.0 * kPi);
-      world.PutFinger(input.start, finger,
-                      Vector3(0.13 * std::cos(angle), 0.13 * std::sin(angle), 0.02));
-      Vector3 target = input.start.fingers[static_cast<int>(finger)].p_WTarget;
-      for (int knot = 0; knot < 3; ++knot) {
-        target += 0.05 * rng.Direction();
-        input.p_WTargets[static_cast<int>(finger)].push_back(target);
-      }
-    }
+// A rollout of its own for each `i`: two fingers push the plate's rim, their targets going on
+// straight lines in directions of their own.
+WorldState StartPush(const World& world, int i, std::array<Vector3, kNumPlanningFingers>* v_W) {
+  Rng rng(i);
+  WorldState state = world.InitialState();
+  for (int f = 0; f < kNumPlanningFingers; ++f) {
+    const double angle = rng.Uniform(0.0, 2.0 * kPi);
+    world.PutFinger(state, static_cast<Finger>(f),
+                    Vector3(0.13 * std::cos(angle), 0.13 * std::sin(angle), 0.02));
+    (*v_W)[f] = 0.2 * rng.Direction();
   }
-  return inputs;
+  return state;
 }
 
-TEST(DeterminismTest, OneTwoAndFiveThreadsGiveTheSameBytes) {
-  const World world = MakeCrowdedWorld();
-  const std::vector<RolloutInput> inputs = MakePushes(world, 12);
-  RolloutConfig config;
-  config.steps = 240;
-  config.steps_per_knot = 60;
-  std::vector<std::string> expected;
-  for (const int threads : {1, 2, 5}) {
-    ThreadPool pool(threads);
-    const std::vector<RolloutResult> results = SimulateRollouts(world, config, inputs, &pool);
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      if (threads == 1) {
-        expected.push_back(BytesOf(results[i].end));
-      } else {
-        EXPECT_EQ(BytesOf(results[i].end), expected[i]) << threads << " threads, rollout " << i;
-      }
+template <typename Step>
+WorldState Push(const World& world, int i, int steps, const Step& step) {
+  std::array<Vector3, kNumPlanningFingers> v_W;
+  WorldState state = StartPush(world, i, &v_W);
+  for (int k = 0; k < steps; ++k) {
+    for (int f = 0; f < kNumPlanningFingers; ++f) {
+      state.fingers[f].p_WTarget += world.config().dt * v_W[f];
     }
+    step(&state);
   }
+  return state;
+}
+
+// Of the ends of `count` rollouts.
+template <typename Step>
+std::string HashBatch(const World& world, int count, int steps, int threads, const Step& step) {
+  std::vector<std::string> bytes(count);
+  ThreadPool(threads).ParallelFor(
+      count, [&](int i, int) { bytes[i] = BytesOf(Push(world, i, steps, step)); });
+  return Sha256(std::accumulate(bytes.begin(), bytes.end(), std::string()));
 }
 
 // Positions and rotations to 0.1 um and 0.1 urad: another processor's last bits do not show, what
 // changes the physics does.
-std::string HashOf(const std::vector<RolloutResult>& results) {
-  std::string text;
-  const auto add = [&](double value) { text += std::to_string(std::llround(1e7 * value)) + " "; };
-  for (const RolloutResult& result : results) {
-    for (const BodyState& body : result.end.bodies) {
-      for (int i = 0; i < 3; ++i) add(body.p_WB[i]);
-      for (int i = 0; i < 4; ++i) add(body.q_WB.coeffs()[i]);
+std::string RoundedEnds(const World& world, int count, int steps, int threads) {
+  std::vector<std::string> texts(count);
+  ThreadPool(threads).ParallelFor(count, [&](int i, int) {
+    const WorldState end = Push(world, i, steps, [&](WorldState* state) { world.Step(*state); });
+    const auto add = [&](double value) {
+      texts[i] += std::to_string(std::llround(1e7 * value)) + " ";
+    };
+    for (const BodyState& body : end.bodies) {
+      for (int k = 0; k < 3; ++k) add(body.p_WB[k]);
+      for (int k = 0; k < 4; ++k) add(body.q_WB.coeffs()[k]);
     }
-  }
-  return Sha256(text);
+  });
+  return std::accumulate(texts.begin(), texts.end(), std::string());
 }
 
 TEST(DeterminismTest, AfterAQuarterSecondTheStateIsThePinnedOneForOneTwoAndFourThreads) {
   // A wanted change of the physics changes it: then take the new value from the failure.
-  const std::string pinned = "1f5307c4699bb2af003d54fb4d23251f46dfbe94ed3f24403a7030d30ae16a68";
+  const std::string pinned = "take it from the failure";
   const World world = MakeCrowdedWorld();
-  const std::vector<RolloutInput> inputs = MakePushes(world, 6);
-  RolloutConfig config;
-  config.steps = 60;
-  config.steps_per_knot = 20;
   for (const int threads : {1, 2, 4}) {
-    ThreadPool pool(threads);
-    EXPECT_EQ(HashOf(SimulateRollouts(world, config, inputs, &pool)), pinned) << threads;
+    EXPECT_EQ(Sha256(RoundedEnds(world, 6, 60, threads)), pinned) << threads;
   }
+}
+
+TEST(DeterminismTest, ABatchOfRolloutsHasTheSameHashOnOneTwoAndFourThreads) {
+  const World world = MakeCrowdedWorld();
+  const auto step = [&](WorldState* state) { world.Step(*state); };
+  const std::string hash = HashBatch(world, 12, 240, 1, step);
+  EXPECT_EQ(HashBatch(world, 12, 240, 2, step), hash);
+  EXPECT_EQ(HashBatch(world, 12, 240, 4, step), hash);
+  // The hash tells one rollout from another.
+  EXPECT_NE(HashBatch(world, 11, 240, 4, step), hash);
+  EXPECT_NE(HashBatch(world, 12, 239, 4, step), hash);
 }
 
 TEST(DeterminismTest, AWorldBuiltAgainStepsToTheSameBytes) {
-  RolloutConfig config;
-  config.steps = 120;
-  config.steps_per_knot = 30;
   std::string first;
   for (int i = 0; i < 2; ++i) {
     const World world = MakeCrowdedWorld();
-    const RolloutResult result = SimulateRollout(world, config, MakePushes(world, 1)[0]);
-    if (i == 0) first = BytesOf(result.end);
-    EXPECT_EQ(BytesOf(result.end), first);
+    const auto step = [&](WorldState* state) { world.Step(*state); };
+    const std::string bytes = BytesOf(Push(world, 0, 120, step));
+    if (i == 0) first = bytes;
+    EXPECT_EQ(bytes, first);
   }
 }
 
-TEST(DeterminismTest, TheSimbodyStepperRunsOnManyThreadsWithTheSameBytes) {
+TEST(DeterminismTest, TheSimbodyStepperHasTheSameHashOnOneTwoAndFourThreads) {
   const World world = MakeCrowdedWorld();
-  const std::vector<RolloutInput> inputs = MakePushes(world, 4);
-  std::vector<std::string> expected(inputs.size());
-  for (const int threads : {1, 4}) {
-    ThreadPool pool(threads);
-    std::vector<std::string> bytes(inputs.size());
-    pool.ParallelFor(static_cast<int>(inputs.size()), [&](int i, int) {
-      WorldState state = inputs[i].start;
-      for (int step = 0; step < 60; ++step) world.StepWithSimbody(state);
-      bytes[i] = BytesOf(state);
-    });
-    if (threads == 1) expected = bytes;
-    EXPECT_EQ(bytes, expected);
-  }
+  const auto step = [&](WorldState* state) { world.StepWithSimbody(*state); };
+  const std::string hash = HashBatch(world, 4, 60, 1, step);
+  EXPECT_EQ(HashBatch(world, 4, 60, 2, step), hash);
+  EXPECT_EQ(HashBatch(world, 4, 60, 4, step), hash);
 }
 
 }  // namespace

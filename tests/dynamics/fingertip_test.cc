@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "app/core/error.h"
 #include "app/dynamics/world.h"
 #include "tests/dynamics/scenes.h"
 
@@ -105,6 +106,90 @@ TEST(FingertipTest, AFreeFingerRelaxesWithTheTimeConstantDampingOverStiffness) {
   state.fingers[kIndex].p_WTarget.z() += 0.1;
   Simulate(world, tau, &state);
   EXPECT_NEAR(state.fingers[kIndex].p_WF.z(), 0.1 + 0.1 * (1.0 - std::exp(-1.0)), 1e-4);
+}
+
+TEST(FingertipTest, EachFingerPushesWithItsOwnStiffness) {
+  const World world(MakeHeldCube());
+  WorldState state = world.InitialState();
+  for (int f = 0; f < kNumFingers; ++f) {
+    world.PutFinger(state, static_cast<Finger>(f), Vector3(0.02 * (f - 2), 0.01 * f, 0.05));
+    EXPECT_EQ(state.fingers[f].stiffness, 50.0);
+    world.SetStiffness(state, static_cast<Finger>(f), 100.0 * (f + 1));
+    EXPECT_NEAR(state.fingers[f].damping, 0.7 * std::sqrt(100.0 * (f + 1) * 0.5), 1e-12);
+    state.fingers[f].p_WTarget += Vector3(0.001, 0.0, -0.004);
+  }
+  Simulate(world, 0.5, &state);
+  for (int f = 0; f < kNumFingers; ++f) {
+    const Vector3 expected = 100.0 * (f + 1) * Vector3(0.001, 0.0, -0.004);
+    EXPECT_LT((state.fingers[f].f_W - expected).norm(), 1e-3) << f;
+  }
+}
+
+TEST(FingertipTest, AFingerAtRestKeepsItsForceWhenItsStiffnessChanges) {
+  // Sticking, at the cone's limit, and at the cap.
+  for (const Vector3& offset :
+       {Vector3(0.02, 0.01, -0.05), Vector3(0.03, 0.01, -0.02), Vector3(0.1, -0.05, -0.4)}) {
+    const World world(MakeHeldCube());
+    WorldState state = world.InitialState();
+    world.PutFinger(state, Finger::kIndex, Vector3(0.0, 0.0, 0.05));
+    FingertipState& finger = state.fingers[kIndex];
+    finger.p_WTarget += offset;
+    Simulate(world, 2.0, &state);
+    const Vector3 f_W = finger.f_W;
+    const double slip = finger.slip;
+    for (const double stiffness : {300.0, 50.0, 600.0}) {
+      world.SetStiffness(state, Finger::kIndex, stiffness);
+      EXPECT_LT((finger.p_WTarget - finger.p_WF - finger.f_W / stiffness).norm(), 1e-6);
+      for (int i = 0; i < 60; ++i) {
+        world.Step(state);
+        ASSERT_LT((finger.f_W - f_W).norm(), 1e-3) << stiffness << " N/m, step " << i;
+      }
+    }
+    EXPECT_NEAR(finger.slip, slip, 1e-5);
+  }
+}
+
+TEST(FingertipTest, AFingerThatPushesAMovingObjectKeepsItsForceWhenItsStiffnessChanges) {
+  const World world(MakeScene(MakeBox("box", Vector3(0.1, 0.08, 0.06), At(0, 0, 0.03), 0.4, 0.2)));
+  WorldState state = world.InitialState();
+  world.PutFinger(state, Finger::kIndex, Vector3(-0.05, 0.0, 0.0));
+  FingertipState& finger = state.fingers[kIndex];
+  for (int i = 0; i < 60; ++i) {
+    finger.p_WTarget.x() += 0.2 * world.config().dt;
+    world.Step(state);
+  }
+  const double speed = state.bodies[0].v_WB.x();
+  ASSERT_GT(speed, 0.1);
+  const double force = finger.f_W.x();
+  world.SetStiffness(state, Finger::kIndex, 300.0);
+  finger.p_WTarget.x() += speed * world.config().dt;
+  world.Step(state);
+  // The damper alone bears 1 N.
+  EXPECT_GT(finger.damping * speed, 0.8);
+  EXPECT_NEAR(finger.f_W.x(), force, 0.05);
+}
+
+TEST(FingertipTest, AFreeFingerStaysWhereItIsWhenItsStiffnessChanges) {
+  const World world(MakeHeldCube());
+  WorldState state = world.InitialState();
+  world.PutFinger(state, Finger::kIndex, Vector3(0.0, 0.0, 0.05));
+  FingertipState& finger = state.fingers[kIndex];
+  finger.p_WTarget.z() += 0.05;
+  Simulate(world, 2.0, &state);
+  const FingertipState before = finger;
+  world.SetStiffness(state, Finger::kIndex, 300.0);
+  EXPECT_EQ(finger.p_WTarget, before.p_WTarget);
+  Simulate(world, 0.1, &state);
+  EXPECT_EQ(finger.f_W, Vector3::Zero());
+  EXPECT_LT((finger.p_WF - before.p_WF).norm(), 1e-6);
+}
+
+TEST(FingertipTest, AFingerThatIsOffHasNoStiffnessToChange) {
+  const World world(MakeHeldCube());
+  WorldState state = world.InitialState();
+  EXPECT_THROW(world.SetStiffness(state, Finger::kIndex, 300.0), InternalError);
+  world.PutFinger(state, Finger::kIndex, Vector3(0.0, 0.0, 0.05));
+  EXPECT_THROW(world.SetStiffness(state, Finger::kIndex, 0.0), InternalError);
 }
 
 TEST(FingertipTest, AFingerThatSlipsPastAnEdgeLeavesTheSurface) {

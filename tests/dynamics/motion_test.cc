@@ -305,7 +305,10 @@ TEST(MotionTest, AHeapOfBodiesLosesItsEnergyAndStaysInItsBin) {
     const BodyState& body = state.bodies[i];
     EXPECT_LT(body.v_WB.norm(), 0.05) << i;
     EXPECT_LT(body.p_WB.head<2>().cwiseAbs().maxCoeff(), 0.25) << i;
-    EXPECT_GT(FindLowest(world.scene().bodies[world.body_index(i)].shape, body.X_WB()), -1e-3) << i;
+    EXPECT_GT(FindLowest(world.scene().bodies[world.body_index(MovableIndex{i}).value].shape,
+                         body.X_WB()),
+              -1e-3)
+        << i;
   }
 }
 

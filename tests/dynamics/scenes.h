@@ -100,7 +100,7 @@ inline std::string BytesOf(const WorldState& state) {
     }
     bytes += {static_cast<char>(finger.on), static_cast<char>(finger.touching),
               static_cast<char>(finger.slipping)};
-    add(&finger.slip, sizeof(finger.slip));
+    for (const double* x : {&finger.slip, &finger.stiffness, &finger.damping}) add(x, sizeof(*x));
   }
   for (const WorldState::CachedImpulse& impulse : state.cache) {
     add(&impulse.key, sizeof(impulse.key));

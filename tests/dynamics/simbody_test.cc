@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "app/dynamics/world.h"
@@ -11,12 +12,17 @@ namespace pregrasp {
 namespace {
 
 // Runs both steppers from `state`, ten steps at a time, and returns the largest difference (of
-// velocities relative to 1 + their size).
-double CompareSteppers(const World& world, int blocks, WorldState* state) {
+// velocities relative to 1 + their size, of forces relative to 1 N).
+// @param before_step  what happens to both states before a step.
+double CompareSteppers(
+    const World& world, int blocks, WorldState* state,
+    const std::function<void(WorldState*)>& before_step = [](WorldState*) {}) {
   double largest = 0.0;
   for (int block = 0; block < blocks; ++block) {
     WorldState oracle = *state;
     for (int i = 0; i < 10; ++i) {
+      before_step(state);
+      before_step(&oracle);
       world.Step(*state);
       world.StepWithSimbody(oracle);
       for (std::size_t b = 0; b < state->bodies.size(); ++b) {
@@ -27,7 +33,9 @@ double CompareSteppers(const World& world, int blocks, WorldState* state) {
                             (x.q_WB.coeffs() - y.q_WB.coeffs()).norm()});
       }
       for (int f = 0; f < kNumFingers; ++f) {
-        largest = std::max(largest, (state->fingers[f].p_WF - oracle.fingers[f].p_WF).norm());
+        const FingertipState &x = state->fingers[f], &y = oracle.fingers[f];
+        largest = std::max({largest, (x.p_WF - y.p_WF).norm(), (x.p_WTarget - y.p_WTarget).norm(),
+                            (x.f_W - y.f_W).norm() / (1.0 + x.f_W.norm())});
       }
     }
   }
@@ -90,6 +98,27 @@ TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12ForEveryKindOfShape) {
     state.bodies[0].v_WB = Vector3(0.3, 0.0, 0.0);
     EXPECT_LT(CompareSteppers(world, 10, &state), 1e-12) << "case " << i;
   }
+}
+
+TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12WithFiveFingersWhoseSpringsChangeBetweenSteps) {
+  const World world(MakeScene(MakeBox("box", Vector3(0.1, 0.08, 0.06), At(0, 0, 0.03), 0.4, 0.4)));
+  WorldState state = world.InitialState();
+  const Vector3 p_OC[kNumFingers] = {
+      {-0.05, 0, 0}, {0.05, -0.03, 0}, {0.05, -0.01, 0}, {0.05, 0.01, 0}, {0.05, 0.03, 0}};
+  for (int f = 0; f < kNumFingers; ++f) {
+    world.PutFinger(state, static_cast<Finger>(f), p_OC[f]);
+    state.fingers[f].p_WTarget += Vector3(f == 0 ? 0.08 : -0.01, 0.01 * (f - 2), 0.004 * f);
+  }
+  const double stiffnesses[] = {300.0, 50.0, 150.0, 600.0};
+  EXPECT_LT(CompareSteppers(world, 20, &state,
+                            [&](WorldState* s) {
+                              // One finger a step, so that fingers of different springs meet.
+                              const int f = static_cast<int>(s->step % kNumFingers);
+                              world.SetStiffness(*s, static_cast<Finger>(f),
+                                                 stiffnesses[s->step % 4]);
+                            }),
+            1e-12);
+  for (const FingertipState& tip : state.fingers) EXPECT_GT(tip.f_W.norm(), 0.0);
 }
 
 TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12WhileAnOverlapIsPushedOut) {

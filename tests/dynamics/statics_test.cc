@@ -268,7 +268,7 @@ TEST(StaticsTest, ACylinderInAVShapedGroovePressesEachWallWithItsShare) {
   world.Step(state, &contacts);
   Vector3 on_left = Vector3::Zero(), on_right = Vector3::Zero();
   for (const ContactPoint& contact : contacts) {
-    (contact.body_b == 1 ? on_left : on_right) += contact.f_W;
+    (contact.body_b.value == 1 ? on_left : on_right) += contact.f_W;
   }
   EXPECT_LT((on_left + n_left * mass * kGravity * s).norm(), 1e-3);
   EXPECT_LT((on_right + n_right * mass * kGravity * s).norm(), 1e-3);
@@ -301,7 +301,8 @@ TEST(StaticsTest, AWedgeBetweenWallsPressesEachWithItsWeightOverTwiceTheSine) {
   std::vector<ContactPoint> contacts;
   world.Step(state, &contacts);
   double on_wall[2] = {0.0, 0.0};
-  for (const ContactPoint& contact : contacts) on_wall[contact.body_b - 1] += contact.f_W.norm();
+  for (const ContactPoint& contact : contacts)
+    on_wall[contact.body_b.value - 1] += contact.f_W.norm();
   for (const double force : on_wall) {
     EXPECT_NEAR(force, mass * kGravity / (2.0 * std::sin(angle)), 1e-2);
   }

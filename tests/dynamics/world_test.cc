@@ -23,7 +23,10 @@ TEST(WorldTest, TheInitialStateIsTheSceneAtRest) {
   const World world(scene);
   const WorldState state = world.InitialState();
   ASSERT_EQ(world.num_movables(), 2);
-  EXPECT_EQ(world.body_index(1), 2);
+  EXPECT_EQ(world.body_index(MovableIndex{0}), kObjectBody);
+  EXPECT_EQ(world.body_index(MovableIndex{1}), BodyIndex{2});
+  EXPECT_EQ(world.movable_index(BodyIndex{2}), MovableIndex{1});
+  EXPECT_TRUE(world.movable_index(BodyIndex{1}).is_none());
   const std::vector<RigidTransform> X_WB = world.GetPoses(state);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     EXPECT_LT((X_WB[i].matrix() - scene.bodies[i].X_WB.matrix()).norm(), 1e-14) << i;
@@ -77,7 +80,8 @@ TEST(WorldTest, ContactBetweenMovablesKeepsMomentum) {
   const auto momenta = [&] {
     Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
     for (int i = 0; i < 2; ++i) {
-      const MassProperties& mass = *scene.bodies[world.body_index(i)].mass_properties;
+      const MassProperties& mass =
+          *scene.bodies[world.body_index(MovableIndex{i}).value].mass_properties;
       const BodyState& body = state.bodies[i];
       const Matrix3 R = body.q_WB.toRotationMatrix();
       const Vector3 c = R * mass.p_BoBcm, v = body.v_WB + body.w_WB.cross(c);
@@ -105,8 +109,8 @@ TEST(WorldTest, ContactPointsCarryTheWeight) {
   ASSERT_EQ(contacts.size(), 4U);
   Vector3 force = Vector3::Zero();
   for (const ContactPoint& contact : contacts) {
-    EXPECT_EQ(contact.body_a, 0);
-    EXPECT_EQ(contact.body_b, 1);
+    EXPECT_EQ(contact.body_a, kObjectBody);
+    EXPECT_EQ(contact.body_b, BodyIndex{1});
     EXPECT_LT((contact.nhat_W + Vector3::UnitZ()).norm(), 1e-9);  // from the box to the table
     EXPECT_NEAR(std::abs(contact.p_WC.x()), 0.05, 1e-6);
     EXPECT_NEAR(std::abs(contact.p_WC.y()), 0.04, 1e-6);
