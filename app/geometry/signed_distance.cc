@@ -1,5 +1,6 @@
 #include "app/geometry/signed_distance.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -11,7 +12,13 @@
 namespace pregrasp {
 namespace {
 
-using Leaf = std::variant<Box, Cylinder, Capsule, Sphere, std::unique_ptr<const MeshDistance>>;
+struct MeshLeaf {
+  explicit MeshLeaf(const TriangleMesh& mesh) : distance(mesh), faces(mesh) {}
+
+  MeshDistance distance;
+  MeshFaces faces;
+};
+using Leaf = std::variant<Box, Cylinder, Capsule, Sphere, std::unique_ptr<const MeshLeaf>>;
 
 // The parts of a union, nested ones flattened. A part farther than the best so far by its bounding
 // box cannot be the smallest.
@@ -22,6 +29,7 @@ class PartsDistance {
   double Calc(const Vector3& p_B) const;
   DistanceSample CalcWithGradient(const Vector3& p_B) const;
   Vector3 Project(const Vector3& p_B, Vector3* nhat) const;
+  FacePoint ProjectToFace(const Vector3& p_B) const;
 
  private:
   struct Part {
@@ -30,6 +38,8 @@ class PartsDistance {
     Leaf leaf;
   };
   DistanceSample CalcPart(const Part& part, const Vector3& p_B) const;
+  void OfferFaces(const Vector3& near_B, const Vector3& p_B, double* squared,
+                  FacePoint* best) const;
 
   std::vector<Part> parts_;
 };
@@ -45,7 +55,7 @@ double CalcLeaf(const Leaf& leaf, const Vector3& p) {
     case 3:
       return CalcDistance(*std::get_if<Sphere>(&leaf), p);
     default:
-      return (*std::get_if<4>(&leaf))->Calc(p);
+      return (*std::get_if<4>(&leaf))->distance.Calc(p);
   }
 }
 
@@ -60,7 +70,24 @@ DistanceSample CalcLeafWithGradient(const Leaf& leaf, const Vector3& p) {
     case 3:
       return CalcDistanceWithGradient(*std::get_if<Sphere>(&leaf), p);
     default:
-      return (*std::get_if<4>(&leaf))->CalcWithGradient(p);
+      return (*std::get_if<4>(&leaf))->distance.CalcWithGradient(p);
+  }
+}
+
+FacePoint ProjectLeafToFace(const Leaf& leaf, const Vector3& p) {
+  switch (leaf.index()) {
+    case 0:
+      return ProjectToFace(*std::get_if<Box>(&leaf), p);
+    case 1:
+      return ProjectToFace(*std::get_if<Cylinder>(&leaf), p);
+    case 2:
+      return ProjectToFace(*std::get_if<Capsule>(&leaf), p);
+    case 3:
+      return ProjectToFace(*std::get_if<Sphere>(&leaf), p);
+    default: {
+      const MeshLeaf& mesh = **std::get_if<4>(&leaf);
+      return mesh.faces.Project(mesh.distance, p);
+    }
   }
 }
 
@@ -69,11 +96,10 @@ Leaf MakeLeaf(const Shape& shape) {
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return *cylinder;
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return *capsule;
   if (const auto* sphere = std::get_if<Sphere>(&shape)) return *sphere;
-  if (const auto* mesh = std::get_if<Mesh>(&shape))
-    return std::make_unique<MeshDistance>(mesh->mesh);
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) return std::make_unique<MeshLeaf>(mesh->mesh);
   const auto* cloud = std::get_if<Cloud>(&shape);
   PREGRASP_CHECK(cloud != nullptr, shape.index());
-  return std::make_unique<MeshDistance>(cloud->mesh);
+  return std::make_unique<MeshLeaf>(cloud->mesh);
 }
 
 void PartsDistance::Add(const Shape& shape, const RigidTransform& X_BP) {
@@ -143,6 +169,43 @@ Vector3 PartsDistance::Project(const Vector3& p_B, Vector3* nhat) const {
   return q_B;
 }
 
+// Of the contacts that each part has near `near_B`, the one nearest to p_B that no other part
+// covers, if that is nearer than the best so far.
+void PartsDistance::OfferFaces(const Vector3& near_B, const Vector3& p_B, double* squared,
+                               FacePoint* best) const {
+  constexpr double kProbe = 1e-4;  // [m]; so far out from an inner face is still inside
+  for (const Part& part : parts_) {
+    if (part.bounds_B.squaredExteriorDistance(p_B) >= *squared) continue;
+    FacePoint face = ProjectLeafToFace(part.leaf, part.X_PB * near_B);
+    face.p_B = part.X_PB.inverse() * face.p_B;
+    face.nhat_B = part.X_PB.linear().transpose() * face.nhat_B;
+    const double face_squared = (face.p_B - p_B).squaredNorm();
+    if (!(face_squared < *squared)) continue;
+    if (Calc(face.p_B + kProbe * face.nhat_B) < 0.5 * kProbe) continue;
+    *squared = face_squared;
+    *best = face;
+  }
+}
+
+// Near p_B itself and near the outer surface's point there. Where both lead into another part, the
+// search widens about that point.
+FacePoint PartsDistance::ProjectToFace(const Vector3& p_B) const {
+  double squared = std::numeric_limits<double>::infinity();
+  FacePoint best;
+  best.p_B = Project(p_B, &best.nhat_B);
+  const Vector3 surface_B = best.p_B;
+  OfferFaces(p_B, p_B, &squared, &best);
+  OfferFaces(surface_B, p_B, &squared, &best);
+  constexpr double kFirst = 1e-3, kLast = 0.2;  // [m]
+  for (double reach = kFirst; std::isinf(squared) && reach < kLast; reach *= 2.0) {
+    for (int i = 0; i < 27; ++i) {
+      const Vector3 step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      OfferFaces(surface_B + reach * step, p_B, &squared, &best);
+    }
+  }
+  return best;
+}
+
 // All bodies but the object, at their start in W.
 Union GatherEnvironment(const Scene& scene) {
   Union whole;
@@ -193,6 +256,10 @@ Vector3 SignedDistance::Project(const Vector3& p_B, Vector3* nhat) const {
   const DistanceSample sample = CalcLeafWithGradient(impl_->leaf, p_B);
   if (nhat != nullptr) *nhat = sample.nhat;
   return p_B - sample.phi * sample.nhat;
+}
+
+FacePoint SignedDistance::ProjectToFace(const Vector3& p_B) const {
+  return impl_->is_union ? impl_->parts.ProjectToFace(p_B) : ProjectLeafToFace(impl_->leaf, p_B);
 }
 
 EnvironmentDistance::EnvironmentDistance(const Scene& scene) : start_(GatherEnvironment(scene)) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/geometry/bounds.h"
+#include "app/geometry/contact_faces.h"
 #include "app/geometry/primitive_distance.h"
 #include "app/scene/scene.h"
 
@@ -28,6 +29,12 @@ class SignedDistance {
   /// inside overlapping parts of a union it is a point of the outer surface, not always the nearest
   /// one.
   Vector3 Project(const Vector3& p_B, Vector3* nhat) const;
+
+  /// What a contact of a plan or grasp is, everywhere: a point near p_B of a face of the outer
+  /// surface, at least kEdgeInset inside every sharp convex edge (CalcEdgeInset on narrow faces),
+  /// with the outward unit normal of the true shape there. Deterministic. The nearest such point of
+  /// box, cylinder, capsule and sphere; near the nearest on meshes and where parts of a union meet.
+  FacePoint ProjectToFace(const Vector3& p_B) const;
 
   /// Of the shape, in B.
   const AlignedBox& bounds() const;

@@ -10,7 +10,9 @@ Placement::Contact ContactOnTriangle(const TriangleMesh& mesh, int t, const Vect
   for (int i = 0; i < 3; ++i) p_O += w[i] * mesh.V.row(mesh.F(t, i)).transpose();
   Placement::Contact contact;
   contact.on = true;
-  contact.p_OC = shape.Project(p_O, &contact.nhat_O);
+  const FacePoint face = shape.ProjectToFace(p_O);
+  contact.p_OC = face.p_B;
+  contact.nhat_O = face.nhat_B;
   return contact;
 }
 

@@ -58,8 +58,8 @@ class StateScorer {
   }
 };
 
-/// The point with barycentric coordinates `w` (sum 1) of triangle `t`, projected to the true shape,
-/// with the true shape's outward normal: what a contact is, everywhere.
+/// The point with barycentric coordinates `w` (sum 1) of triangle `t`, projected to a face of the
+/// true shape (SignedDistance::ProjectToFace): what a contact is, everywhere.
 Placement::Contact ContactOnTriangle(const TriangleMesh& mesh, int t, const Vector3& w,
                                      const SignedDistance& shape);
 

@@ -161,8 +161,7 @@ std::optional<GraspContact> ContactSampler::DrawOpposite(const GraspContact& fro
     if (phi > -1e-6) break;
     t += std::max(-phi, 1e-5);
   }
-  GraspContact contact{finger, Vector3::Zero(), Vector3::UnitZ()};
-  contact.p_OC = world_.object().Project(from.p_OC + t * along, &contact.nhat_O);
+  const GraspContact contact = world_.ContactNear(finger, from.p_OC + t * along);
   if (!CanTouch(contact.p_OC, contact.nhat_O, FingertipRadius(finger), config_.slack,
                 world_.object(), world_.environment(), X_WB_)) {
     return std::nullopt;

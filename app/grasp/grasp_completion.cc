@@ -20,10 +20,7 @@ std::vector<GraspContact> ProjectGrasp(const GraspWorld& world, const GraspPoint
   for (int f = 0; f < kNumFingers; ++f) {
     const Finger finger = static_cast<Finger>(f);
     if (IsFixed(fixed, finger)) continue;
-    GraspContact contact;
-    contact.finger = finger;
-    contact.p_OC = world.object().Project(generated[f], &contact.nhat_O);
-    contacts.push_back(contact);
+    contacts.push_back(world.ContactNear(finger, generated[f]));
   }
   std::sort(contacts.begin(), contacts.end(),
             [](const GraspContact& a, const GraspContact& b) { return a.finger < b.finger; });
@@ -41,8 +38,7 @@ std::vector<GraspContact> MoveAlongSurface(const GraspWorld& world,
     const Vector3 start = contact.p_OC;
     const double distance = reach * std::cbrt(rng.Uniform());
     const Vector3 p_O = start + distance * rng.Direction();
-    GraspContact candidate = contact;
-    candidate.p_OC = world.object().Project(p_O, &candidate.nhat_O);
+    const GraspContact candidate = world.ContactNear(contact.finger, p_O);
     if ((candidate.p_OC - start).norm() <= max_reach) contact = candidate;
   }
   return moved;

@@ -59,6 +59,11 @@ GraspWorld::GraspWorld(const Scene& scene, const HandModel& hand,
   object_radius_ = CalcRadiusAbout(surface_, scene_.object().mass_properties->p_BoBcm);
 }
 
+GraspContact GraspWorld::ContactNear(Finger finger, const Vector3& p_O) const {
+  const FacePoint face = object_.ProjectToFace(p_O);
+  return {finger, face.p_B, face.nhat_B};
+}
+
 std::vector<RigidTransform> GraspWorld::StartPoses() const {
   std::vector<RigidTransform> X_WB;
   for (const Body& body : scene_.bodies) X_WB.push_back(body.X_WB);

@@ -12,7 +12,7 @@
 namespace pregrasp {
 
 /// A fingertip's place on the object, in its frame O: on the true surface, with the outward unit
-/// normal.
+/// normal. Of a grasp it lies on a face, as GraspWorld::ContactNear makes it.
 struct GraspContact {
   Finger finger = Finger::kThumb;
   Vector3 p_OC = Vector3::Zero();
@@ -49,6 +49,9 @@ class GraspWorld {
   const TipReach& reach() const { return reach_; }
   /// The largest distance of the object's surface from its centre of mass [m].
   double object_radius() const { return object_radius_; }
+
+  /// The finger's contact near p_O: SignedDistance::ProjectToFace of the object.
+  GraspContact ContactNear(Finger finger, const Vector3& p_O) const;
 
   /// Every body's pose at the start, in scene order.
   std::vector<RigidTransform> StartPoses() const;

@@ -13,8 +13,7 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kSegments = 48;    // of the tessellation, a full turn
-constexpr double kProbe = 1e-4;  // [m]; so far out from an inner face of a union is still inside
+constexpr int kSegments = 48;  // of the tessellation, a full turn
 
 // The part of a convex polygon where offset <= axis p.
 std::vector<Vector3> Clip(const std::vector<Vector3>& polygon, const Vector3& axis, double offset) {
@@ -110,12 +109,11 @@ SurfacePoints MakeSurfacePoints(const Shape& shape, const SignedDistance& distan
   points.N.resize(static_cast<int>(middles.size()), 3);
   int count = 0;
   for (const Vector3& middle : middles) {
-    Vector3 nhat;
-    const Vector3 p = distance.Project(middle, &nhat);
-    const bool moved_to_another_face = (p - middle).norm() > points.spacing;
-    if (moved_to_another_face || distance.Calc(p + kProbe * nhat) < 0.5 * kProbe) continue;
-    points.P.row(count) = p;
-    points.N.row(count++) = nhat;
+    const FacePoint face = distance.ProjectToFace(middle);
+    const bool moved_to_another_face = (face.p_B - middle).norm() > points.spacing;
+    if (moved_to_another_face) continue;
+    points.P.row(count) = face.p_B;
+    points.N.row(count++) = face.nhat_B;
   }
   points.P.conservativeResize(count, 3);
   points.N.conservativeResize(count, 3);

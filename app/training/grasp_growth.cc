@@ -30,7 +30,7 @@ std::vector<GraspContact> Perturb(const GraspWorld& world, std::vector<GraspCont
                                   double step, Rng& rng) {
   for (GraspContact& contact : contacts) {
     const Vector3 p_O = contact.p_OC + step * std::cbrt(rng.Uniform()) * rng.Direction();
-    contact.p_OC = world.object().Project(p_O, &contact.nhat_O);
+    contact = world.ContactNear(contact.finger, p_O);
   }
   return contacts;
 }

@@ -29,9 +29,8 @@ std::optional<PlanningContacts> FromGrasp(const GraspWorld& world,
     if (!Wanted(which, f)) continue;
     if (!grasp.used[f]) return std::nullopt;
     const Vector3 near = grasp.p_OC[f] + kMoved * std::cbrt(rng.Uniform()) * rng.Direction();
-    Vector3 nhat_O;
-    const Vector3 p_OC = world.object().Project(near, &nhat_O);
-    contacts[f] = ContactAt(world, p_OC, nhat_O, X_WB);
+    const FacePoint face = world.object().ProjectToFace(near);
+    contacts[f] = ContactAt(world, face.p_B, face.nhat_B, X_WB);
   }
   return contacts;
 }
