@@ -240,8 +240,8 @@ void ContactSolver::AddPoints(const StepConfig& config, const std::vector<BodyKe
 
 Convergence ContactSolver::Solve(const StepConfig& config) {
   constexpr int kMoreSweeps = 5;  // as many times, in a crowd of points
-  const int max_sweeps =
-      (y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many) * (crowded_ ? kMoreSweeps : 1);
+  const int max_sweeps = (y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many) *
+                         std::max(crowded_ ? kMoreSweeps : 1, CalcMassFactor());
   StopRule stop(y_.size() <= 2 ? config.tolerance : config.tolerance_many,
                 crowded_ || y_.size() > 1);
   // On one body, sweeping to and fro converges faster. Along a row of bodies it does not: a push
@@ -272,6 +272,20 @@ Convergence ContactSolver::Solve(const StepConfig& config) {
   }
   if (least_phi < -kCorrectionSlop) CorrectPositions(config, max_sweeps);
   return convergence;
+}
+
+// How many times as many sweeps the masses ask for. A heavy body on a light one: what a sweep moves
+// it by is a share of what is needed that is as small as their ratio.
+int ContactSolver::CalcMassFactor() const {
+  constexpr double kOrdinary = 10.0;  // ratio of masses
+  constexpr double kMost = 25.0;
+  double ratio = 1.0;
+  for (const ContactRows& rows : rows_) {
+    if (rows.second < 0) continue;
+    const double lighter = rows.inv_mass_lighter();
+    ratio = std::max(ratio, lighter / (rows.inv_mass_sum - lighter));
+  }
+  return static_cast<int>(std::clamp(ratio / kOrdinary, 1.0, kMost));
 }
 
 // The fastest approach that is left, beyond what the points may [m/s].
