@@ -193,7 +193,8 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
       next = 0;
     }
     FindImpulses(contacts[c], cached, &next, &start_W);
-    rows_[c].Set(kernels, motions, contacts[c], start_W, points_left.first(size), y_start_.data());
+    rows_[c].Set(kernels, motions, contacts[c], start_W, config.spread_support,
+                 points_left.first(size), y_start_.data());
     rows_[c].SetPairs(num_points > kMaxPairedPoints);
     SetBias(config, rows_[c]);
     points_left = points_left.subspan(size);
@@ -396,11 +397,16 @@ void ContactSolver::SumImpulses(const std::vector<BodyMotion>& motions,
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactRows& rows = rows_[c];
     for (std::size_t k = 0; k < rows.points.size(); ++k) {
+      const PointRows& point = rows.points[k];
       const Vector3& p_W = contacts[c].manifold.points[k].p_W;
-      const Vector3 impulse = rows.ToWorld(rows.points[k].lambda);
-      const Vector3 correction = rows.axes_W.col(2) * rows.points[k].correction;
-      add(contacts[c].movable_a, p_W, -impulse, -correction);
-      add(contacts[c].movable_b, p_W, impulse, correction);
+      const Vector3 q_W = rows.FrictionPoint(p_W);
+      const Vector3 friction_W = rows.ToWorld({point.lambda.t, 0.0});
+      const Vector3 normal_W = rows.axes_W.col(2) * point.lambda.n;
+      const Vector3 correction_W = rows.axes_W.col(2) * point.correction;
+      add(contacts[c].movable_a, p_W, -normal_W, -correction_W);
+      add(contacts[c].movable_a, q_W, -friction_W, Vector3::Zero());
+      add(contacts[c].movable_b, p_W, normal_W, correction_W);
+      add(contacts[c].movable_b, q_W, friction_W, Vector3::Zero());
     }
   }
   for (const FingerRows& row : fingers_) {
