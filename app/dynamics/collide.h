@@ -31,6 +31,16 @@ inline constexpr bool IsGrazing(double separation) {
 }
 inline constexpr double kSlideReach = 2e-3;
 
+/// Whether two shapes move along a plane in the step rather than through it: at the level of a face
+/// they then slide on past its edge, however fast, or cut the edge by a tenth of their way at most.
+/// Gravity's part of a step, which a contact will take away, stays below that beyond kSlideReach.
+inline bool MoveAlong(const PlacedConvex& a, const PlacedConvex& b, const Vector3& nhat_W) {
+  constexpr double kMaxSlope = 0.1;
+  const Vector3 shift_W = b.shift_W - a.shift_W;
+  const double across = nhat_W.dot(shift_W);
+  return across * across <= kMaxSlope * kMaxSlope * shift_W.squaredNorm();
+}
+
 /// Whether no point of a face's contact is as near as the shapes are along its normal: the nearest
 /// parts of shapes that fly at each other lie beside the face, and the face says little about them.
 inline bool IsBesideFace(const Manifold& manifold, double separation) {

@@ -49,6 +49,7 @@ class AxisSearch {
       // A face that overlaps in a sliver only is given up for another that is as near.
       grazes_ = grazes_ || result == OverlapResult::kSliver;
     }
+    if (slides_) return false;
     return CollideNearestPoints(grazes_ ? kSlideReach : -kInfinity, manifold);
   }
 
@@ -81,7 +82,10 @@ class AxisSearch {
     const auto consider = [&](const Vector3& nhat_W, double offset) {
       const double separation =
           nhat_W.dot(CalcSupport(other, -nhat_W) - owner.p_WP) - offset - CoreRadius(*other.convex);
-      grazes_ = grazes_ || IsGrazing(separation);
+      if (IsGrazing(separation)) {
+        grazes_ = true;
+        slides_ = slides_ || MoveAlong(owner, other, nhat_W);
+      }
       if (separation <= best.separation) return;
       best.separation = separation;
       best.nhat_W = flip ? -nhat_W : nhat_W;
@@ -174,6 +178,7 @@ class AxisSearch {
   std::array<Candidate, 4> candidates_;
   int count_ = 0;
   bool grazes_ = false;  // one shape may pass along a face of the other without touching
+  bool slides_ = false;  // and moves that way
   Feature feature_a_, feature_b_;
 };
 

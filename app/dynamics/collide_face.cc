@@ -74,6 +74,7 @@ void AddCylinderPoints(const FacePlane& plane, Manifold* manifold) {
     const Vector2 r = q.radius * rim.directions[k];
     plane.Add(center + r.x() * plane.R_AQ.col(0) + r.y() * plane.R_AQ.col(1), rim.ids[k], manifold);
   }
+  manifold->round = manifold->size == 4;
 }
 
 void AddCapsulePoints(const FacePlane& plane, Manifold* manifold) {

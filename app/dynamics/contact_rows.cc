@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "app/dynamics/support_spread.h"
+
 namespace pregrasp {
 namespace {
 
@@ -27,9 +29,10 @@ struct Lanes3 {
 struct ArmLanes {
   std::array<Lanes3, 3> A;
 
-  // s times r x axis, for r from the centre of mass and s over the square roots of the moments.
+  // Sets the rows of `num_rows` axes: s times r x axis, for r from the centre of mass and s over
+  // the square roots of the moments.
   void Set(const BodyKernel& kernel, const BodyMotion& motion, const Matrix3& axes_W,
-           const Lanes3& p_W, double sign) {
+           const Lanes3& p_W, double sign, int num_rows = 3) {
     const Vector3& c = motion.p_WBcm;
     const Matrix3& R = motion.R_WP;
     const Lanes3 r_W{p_W.x - c.x(), p_W.y - c.y(), p_W.z - c.z()};
@@ -37,7 +40,7 @@ struct ArmLanes {
                    r_W.Dot(Vector3(R.col(2)))};
     const Vector3 s = sign * kernel.inv_sqrt_I_P;
     const Matrix3 axes = R.transpose() * axes_W;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < num_rows; ++i) {
       const Vector3 axis = axes.col(i);
       A[i].x = r.y * (s.x() * axis.z()) - r.z * (s.x() * axis.y());
       A[i].y = r.z * (s.y() * axis.x()) - r.x * (s.y() * axis.z());
@@ -121,7 +124,7 @@ std::array<Lanes, 3> CutToCone(double friction, const Matrix3& axes_W, const Lan
 void ContactRows::Set(const std::vector<BodyKernel>& kernels,
                       const std::vector<BodyMotion>& motions, const Contact& contact,
                       const std::array<const Vector3*, Manifold::kMaxPoints>& start_W,
-                      std::span<PointRows> memory, BodyVelocity* y_start) {
+                      bool spread_support, std::span<PointRows> memory, BodyVelocity* y_start) {
   const bool a_moves = !contact.movable_a.is_none();
   axes_W = FrameFromNormal(contact.manifold.nhat_W);
   first = a_moves ? contact.movable_a.value : contact.movable_b.value;
@@ -132,6 +135,8 @@ void ContactRows::Set(const std::vector<BodyKernel>& kernels,
   inv_mass_sum = inv_mass_first + inv_mass_second;
   friction = contact.friction;
   points = memory;
+  spread = 1.0;
+  if (spread_support) SetSpread(contact.manifold, start_W);
   const int size = contact.manifold.size;
   for (int begin = 0; begin < size; begin += kNumLanes) {
     const int count = std::min(kNumLanes, size - begin);
@@ -145,6 +150,14 @@ void ContactRows::Set(const std::vector<BodyKernel>& kernels,
     ArmLanes arms_first, arms_second;
     arms_first.Set(kernels[first], motions[first], axes_W, p_W, sign_first);
     if (second >= 0) arms_second.Set(kernels[second], motions[second], axes_W, p_W, 1.0);
+    if (spread != 1.0) {
+      Lanes3 q_W;
+      for (int k = 0; k < kNumLanes; ++k) {
+        q_W.Set(k, FrictionPoint(Vector3(p_W.x[k], p_W.y[k], p_W.z[k])));
+      }
+      arms_first.Set(kernels[first], motions[first], axes_W, q_W, sign_first, 2);
+      if (second >= 0) arms_second.Set(kernels[second], motions[second], axes_W, q_W, 1.0, 2);
+    }
     const MassLanes mass(inv_mass_sum, arms_first, second >= 0 ? &arms_second : nullptr);
     const std::array<Lanes, 3> lambda = CutToCone(friction, axes_W, impulse_W);
 
@@ -167,6 +180,23 @@ void ContactRows::Set(const std::vector<BodyKernel>& kernels,
       point.correction = 0.0;
     }
   }
+}
+
+// The centre is that of the pressure in the last step, so that a body that slides without turning
+// is not turned by its friction; of all points alike if none bore load.
+void ContactRows::SetSpread(const Manifold& manifold,
+                            const std::array<const Vector3*, Manifold::kMaxPoints>& start_W) {
+  spread = CalcSupportSpread(manifold);
+  Vector3 mean_W = Vector3::Zero(), sum_W = Vector3::Zero();
+  double load = 0.0;
+  for (int i = 0; i < manifold.size; ++i) {
+    const Vector3& p_W = manifold.points[i].p_W;
+    const double n = start_W[i] != nullptr ? std::max(0.0, axes_W.col(2).dot(*start_W[i])) : 0.0;
+    mean_W += p_W / manifold.size;
+    sum_W += n * p_W;
+    load += n;
+  }
+  center_W = load > 0.0 ? Vector3(sum_W / load) : mean_W;
 }
 
 double ContactRows::CalcCoupling(int a, int b) const {

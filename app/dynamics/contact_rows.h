@@ -74,6 +74,10 @@ struct ContactRows {
   double sign_first = 1.0;     ///< -1 if the first is body a
   double inv_mass_first = 0.0, inv_mass_second = 0.0, inv_mass_sum = 0.0;
   double friction = 0.0;
+  /// Friction acts at the points moved towards the centre of pressure, to this share of their
+  /// distance; at 1 it acts at the points themselves.
+  double spread = 1.0;
+  Vector3 center_W = Vector3::Zero();
   std::span<PointRows> points;
   std::array<PointPair, Manifold::kMaxPoints> pairs;
   int num_pairs = 0;
@@ -81,15 +85,21 @@ struct ContactRows {
   double inv_mass_lighter() const { return std::max(inv_mass_first, inv_mass_second); }
 
   /// Sets everything but the points' bias and the pairs.
+  /// @param spread_support  whether friction acts nearer to the centre; see StepConfig.
   /// @param start_W  impulses on body b that the points start from, null for none [N s].
   /// @param memory  for the points.
   /// @param y_start  where to add what the starting impulses do to the velocities, by movable.
   void Set(const std::vector<BodyKernel>& kernels, const std::vector<BodyMotion>& motions,
            const Contact& contact, const std::array<const Vector3*, Manifold::kMaxPoints>& start_W,
-           std::span<PointRows> memory, BodyVelocity* y_start);
+           bool spread_support, std::span<PointRows> memory, BodyVelocity* y_start);
 
   /// Says which points are solved together; `alone` if none are.
   void SetPairs(bool alone);
+
+  /// Where the friction of the point at p_W acts.
+  Vector3 FrictionPoint(const Vector3& p_W) const {
+    return spread == 1.0 ? p_W : Vector3(center_W + spread * (p_W - center_W));
+  }
 
   /// An impulse on body b [N s].
   Vector3 ToWorld(const PointImpulse& d) const {
@@ -97,6 +107,8 @@ struct ContactRows {
   }
 
  private:
+  void SetSpread(const Manifold& manifold,
+                 const std::array<const Vector3*, Manifold::kMaxPoints>& start_W);
   void AddPair(int a, int b);
   double CalcCoupling(int a, int b) const;
 };

@@ -193,7 +193,8 @@ void ContactSolver::SetContacts(const StepConfig& config, const std::vector<Body
       next = 0;
     }
     FindImpulses(contacts[c], cached, &next, &start_W);
-    rows_[c].Set(kernels, motions, contacts[c], start_W, points_left.first(size), y_start_.data());
+    rows_[c].Set(kernels, motions, contacts[c], start_W, config.spread_support,
+                 points_left.first(size), y_start_.data());
     rows_[c].SetPairs(num_points > kMaxPairedPoints);
     SetBias(config, rows_[c]);
     points_left = points_left.subspan(size);
@@ -240,8 +241,8 @@ void ContactSolver::AddPoints(const StepConfig& config, const std::vector<BodyKe
 
 Convergence ContactSolver::Solve(const StepConfig& config) {
   constexpr int kMoreSweeps = 5;  // as many times, in a crowd of points
-  const int max_sweeps =
-      (y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many) * (crowded_ ? kMoreSweeps : 1);
+  const int max_sweeps = (y_.size() <= 2 ? config.max_sweeps : config.max_sweeps_many) *
+                         std::max(crowded_ ? kMoreSweeps : 1, CalcMassFactor());
   StopRule stop(y_.size() <= 2 ? config.tolerance : config.tolerance_many,
                 crowded_ || y_.size() > 1);
   // On one body, sweeping to and fro converges faster. Along a row of bodies it does not: a push
@@ -272,6 +273,20 @@ Convergence ContactSolver::Solve(const StepConfig& config) {
   }
   if (least_phi < -kCorrectionSlop) CorrectPositions(config, max_sweeps);
   return convergence;
+}
+
+// How many times as many sweeps the masses ask for. A heavy body on a light one: what a sweep moves
+// it by is a share of what is needed that is as small as their ratio.
+int ContactSolver::CalcMassFactor() const {
+  constexpr double kOrdinary = 10.0;  // ratio of masses
+  constexpr double kMost = 25.0;
+  double ratio = 1.0;
+  for (const ContactRows& rows : rows_) {
+    if (rows.second < 0) continue;
+    const double lighter = rows.inv_mass_lighter();
+    ratio = std::max(ratio, lighter / (rows.inv_mass_sum - lighter));
+  }
+  return static_cast<int>(std::clamp(ratio / kOrdinary, 1.0, kMost));
 }
 
 // The fastest approach that is left, beyond what the points may [m/s].
@@ -382,11 +397,16 @@ void ContactSolver::SumImpulses(const std::vector<BodyMotion>& motions,
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactRows& rows = rows_[c];
     for (std::size_t k = 0; k < rows.points.size(); ++k) {
+      const PointRows& point = rows.points[k];
       const Vector3& p_W = contacts[c].manifold.points[k].p_W;
-      const Vector3 impulse = rows.ToWorld(rows.points[k].lambda);
-      const Vector3 correction = rows.axes_W.col(2) * rows.points[k].correction;
-      add(contacts[c].movable_a, p_W, -impulse, -correction);
-      add(contacts[c].movable_b, p_W, impulse, correction);
+      const Vector3 q_W = rows.FrictionPoint(p_W);
+      const Vector3 friction_W = rows.ToWorld({point.lambda.t, 0.0});
+      const Vector3 normal_W = rows.axes_W.col(2) * point.lambda.n;
+      const Vector3 correction_W = rows.axes_W.col(2) * point.correction;
+      add(contacts[c].movable_a, p_W, -normal_W, -correction_W);
+      add(contacts[c].movable_a, q_W, -friction_W, Vector3::Zero());
+      add(contacts[c].movable_b, p_W, normal_W, correction_W);
+      add(contacts[c].movable_b, q_W, friction_W, Vector3::Zero());
     }
   }
   for (const FingerRows& row : fingers_) {

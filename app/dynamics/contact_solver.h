@@ -54,6 +54,7 @@ class ContactSolver {
 
  private:
   void SetBias(const StepConfig& config, const ContactRows& rows) const;
+  int CalcMassFactor() const;
   double CalcApproach() const;
   double CalcStretch() const;
   void Accelerate(double stretch);

@@ -88,6 +88,7 @@ struct Manifold {
   /// Points of the two bodies that bore load in the last step, of other pieces too.
   std::span<const WorldState::CachedImpulse> loaded;
   bool crowded = false;  ///< some of the face's points are not in the plane of the four
+  bool round = false;    ///< the four stand for all of a disc
 
   FaceStore* store = nullptr;        ///< where faces are kept, if anywhere
   const FacePoints* face = nullptr;  ///< all points of the face, if some of them are left out
@@ -96,7 +97,7 @@ struct Manifold {
   void Clear() {
     size = 0;
     face = nullptr;
-    crowded = false;
+    crowded = round = false;
   }
   /// An empty face: the store's next, or `own` if there is no store.
   FacePoints& NextFace(FacePoints* own) const { return store != nullptr ? *store->Next() : *own; }

@@ -178,9 +178,12 @@ class Overlap {
 
   void AddRegions() {
     const bool b_within = AddCorners(b_, a_, 0);
+    round_ = b_within && b_.kind == Kind::kDisc;
     if (b_within) return;
     count_b_ = count_;
-    if (AddCorners(a_, b_, 512)) return;
+    const bool a_within = AddCorners(a_, b_, 512);
+    round_ = a_within && a_.kind == Kind::kDisc;
+    if (a_within) return;
     if (a_.kind == Kind::kPolygon && b_.kind == Kind::kPolygon) {
       AddEdgeCrossings();
     } else if (a_.kind == Kind::kPolygon) {
@@ -387,6 +390,7 @@ class Overlap {
     on_a.x_W += a_.gradient.x() * plane_.nhat_W;
     on_a.y_W += a_.gradient.y() * plane_.nhat_W;
     AddFacePoints(points, on_a, approach_, manifold);
+    manifold->round = round_ && manifold->size == 4;
     return OverlapResult::kTouching;
   }
 
@@ -397,6 +401,7 @@ class Overlap {
   Outline a_, b_;
   std::array<Candidate, kMaxCandidates> candidates_;
   int count_ = 0, count_b_ = 0;
+  bool round_ = false;  // all of a disc lies over the other outline
 };
 
 }  // namespace

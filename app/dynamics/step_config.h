@@ -22,9 +22,9 @@ struct StepConfig {
   /// by default: a pregrasp consists of pushes.
   double restitution = 0.0;
 
-  /// Whether a contact of four points resists turning on the spot like even pressure over the patch
-  /// that they bound; without it, like its corners (see README.md). One of the worlds in which a plan
-  /// is tested.
+  /// Whether a contact resists turning on the spot like even pressure over the patch that its
+  /// points stand for: their friction then acts nearer to their centre. Without it a face resists
+  /// like its corners, by half more for a disc to twice as much for a line.
   bool spread_support = false;
 
   /// @throws InputError naming the field.

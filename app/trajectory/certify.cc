@@ -18,6 +18,9 @@ std::vector<CertifyReason> Judge(const PlanOutcome& outcome, const CertifyConfig
   std::vector<CertifyReason> reasons;
   if (outcome.contact_seconds == 0.0) reasons.push_back(CertifyReason::kNeverTouches);
   if (outcome.max_tip_overlap > kTipOverlapAllowed) reasons.push_back(CertifyReason::kTipOverlap);
+  if (!(outcome.unresolved <= config.max_unresolved)) {
+    reasons.push_back(CertifyReason::kNotConverged);
+  }
   double shift = 0.0, turn_deg = 0.0;
   CalcShift(outcome.hold_start, outcome.end, &shift, &turn_deg);
   if (!(shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg)) {
@@ -38,6 +41,8 @@ const char* CertifyReasonText(CertifyReason reason) {
       return "the object does not stay where it is while the last targets are kept";
     case CertifyReason::kNeverTouches:
       return "no finger ever touches the object";
+    case CertifyReason::kNotConverged:
+      return "the simulation did not find the contact forces exactly enough";
     case CertifyReason::kStepDependent:
       return "half the time step gives another verdict";
   }

@@ -10,6 +10,9 @@ struct CertifyConfig {
   double hold_seconds = 1.5;       ///< the last targets are kept this long (design, section 4)
   double max_hold_shift = 0.01;    ///< the object may move this far in the hold [m]
   double max_hold_turn_deg = 5.0;  ///< and turn this far [degrees]
+  /// Bodies may have come this far into each other by what the contact solver left unfinished, over
+  /// all steps and as if nothing had pushed them out again [m]: a tenth of max_hold_shift.
+  double max_unresolved = 0.001;
 };
 
 /// Why a plan is not certified.
@@ -18,6 +21,7 @@ enum class CertifyReason {
   kTipOverlap,     ///< a fingertip sphere overlaps the surroundings by more than 1 mm at some step
   kDoesNotHold,    ///< the object moves on in the hold
   kNeverTouches,   ///< no finger ever touches the object
+  kNotConverged,   ///< contact forces were not found to the accuracy that a verdict needs
   kStepDependent,  ///< half the time step gives another verdict
 };
 const char* CertifyReasonText(CertifyReason reason);

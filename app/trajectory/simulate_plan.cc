@@ -91,12 +91,20 @@ class PlanRunner {
   void Step() {
     contacts_.clear();
     if (stepper_ == Stepper::kKernel) {
-      world_.Step(state_, trace_ ? &contacts_ : nullptr);
+      AddConvergence(world_.Step(state_, trace_ ? &contacts_ : nullptr));
     } else {
-      world_.StepWithSimbody(state_, &contacts_);
+      AddConvergence(world_.StepWithSimbody(state_, &contacts_));
     }
     KeepBooks();
     if (trace_) trace_->push_back({state_, contacts_});
+  }
+
+  void AddConvergence(const Convergence& convergence) {
+    if (convergence.converged) return;
+    const double dt = world_.config().dt;
+    outcome_.unconverged_seconds += dt;
+    outcome_.max_residual = std::max(outcome_.max_residual, convergence.residual);
+    outcome_.unresolved += dt * convergence.residual;
   }
 
   void KeepBooks() {

@@ -27,6 +27,10 @@ struct PlanOutcome {
   double tip_overlap_seconds = 0.0;  ///< time with more than kTipOverlapAllowed
   double min_tip_distance = 1e9;     ///< between the two fingertips while both are on [m]
   bool diverged = false;             ///< a body left the scene or the state is not finite
+
+  double unconverged_seconds = 0.0;  ///< in steps that the contact solver left unfinished
+  double max_residual = 0.0;         ///< the fastest approach that such a step left [m/s]
+  double unresolved = 0.0;           ///< the way of these approaches, summed over the steps [m]
 };
 
 /// Honesty rule 4: a fingertip sphere may overlap the environment by at most this [m].

@@ -52,6 +52,44 @@ TEST(StackTest, StacksOfBoxesComeToRestAndStayWhereTheyWerePut) {
   }
 }
 
+TEST(StackTest, AHeavyBodyRestsOnALightOneWhateverTheRatioOfTheirMasses) {
+  const Body jar = MakeMovable("heavy", Cylinder{0.045, 0.14}, At(0, 0, 0.074), 1.8, 0.4);
+  const Body crate = MakeBox("heavy", Vector3(0.2, 0.25, 0.08), At(0, 0, 0.044), 1.8, 0.4);
+  for (const double ratio : {20.0, 80.0, 150.0, 400.0, 900.0}) {
+    const double mass = 1.8 / ratio;
+    const Body coaster = MakeMovable("light", Cylinder{0.025, 0.004}, At(0, 0, 0.002), mass, 0.4);
+    const Body strip = MakeBox("light", Vector3(0.24, 0.025, 0.004), At(0, 0, 0.002), mass, 0.4);
+    for (const auto& [heavy, light] : {std::pair(jar, coaster), std::pair(crate, strip)}) {
+      const World world(MakeScene(heavy, {MakeTable(), light}));
+      WorldState state = world.InitialState();
+      double overlap = 0.0;
+      for (int i = 0; i < 480; ++i) {
+        overlap = std::max(overlap, world.StepWithTrace(state).max_penetration);
+      }
+      const std::string what = heavy.name + " on " + light.name + ", " + std::to_string(ratio);
+      EXPECT_LT(overlap, 5e-5) << what;
+      for (int i = 0; i < 2; ++i) {
+        const Vector3 moved = state.bodies[i].p_WB - world.InitialState().bodies[i].p_WB;
+        EXPECT_LT(moved.norm(), 5e-5) << what;
+        EXPECT_LT(CalcTilt(state.bodies[i]), 1e-3) << what;
+      }
+    }
+  }
+}
+
+TEST(StackTest, AHeavyBodyIsDroppedOnALightOneAndDoesNotSinkIn) {
+  const World world(MakeScene(
+      MakeBox("heavy", Vector3(0.2, 0.25, 0.08), At(0, 0.006, 0.05), 1.8, 0.4),
+      {MakeTable(), MakeBox("light", Vector3(0.24, 0.025, 0.004), At(0, 0, 0.002), 0.004, 0.4)}));
+  WorldState state = world.InitialState();
+  double overlap = 0.0;
+  for (int i = 0; i < 480; ++i) {
+    overlap = std::max(overlap, world.StepWithTrace(state).max_penetration);
+  }
+  EXPECT_LT(overlap, 1e-4);
+  EXPECT_NEAR(state.bodies[0].p_WB.z(), 0.044, 1e-5);
+}
+
 TEST(StackTest, ARowOfBooksBetweenWallsStaysAtRest) {
   std::vector<Body> environment = {
       MakeTable(0.3), MakeFixed("left", Box{Vector3(0.02, 0.3, 0.3)}, At(-0.0945, 0, 0.15), 0.3),

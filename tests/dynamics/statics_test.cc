@@ -382,5 +382,52 @@ TEST(StaticsTest, ASeamBetweenTwoBoardsIsNoObstacle) {
   }
 }
 
+TEST(StaticsTest, AFloorOfTilesSlowsWhatSlidesLikeOnePiece) {
+  const double mu = 0.2, tile = 0.047;
+  std::vector<Body> tiles;
+  for (int i = -1; i < 24; ++i) {
+    tiles.push_back(MakeFixed("tile" + std::to_string(i), Box{Vector3(tile, 0.4, 0.02)},
+                              At(tile * i, 0, -0.01), mu));
+  }
+  const std::vector<Body> one = {
+      MakeFixed("floor", Box{Vector3(4, 0.4, 0.02)}, At(0, 0, -0.01), mu)};
+  for (const Shape& shape : {Shape(Cylinder{0.015, 0.06}), Shape(Cylinder{0.028, 0.06}),
+                             Shape(Box{Vector3(0.03, 0.05, 0.06)}), Shape(Sphere{0.03})}) {
+    // Down a slope on which sliding bodies keep their speed; up to 7 mm a step.
+    for (const double v : {0.11, 0.45, 0.52, 0.63, 0.87, 1.31, 1.72}) {
+      double speed[2];
+      for (int tiled = 0; tiled < 2; ++tiled) {
+        Scene scene = MakeScene(MakeMovable("body", shape, At(0.02, 0.003, 0.03), 0.2, mu),
+                                tiled ? tiles : one);
+        scene.gravity = InclineGravity(std::atan(mu));
+        const World world(scene);
+        WorldState state = world.InitialState();
+        state.bodies[0].v_WB.x() = v;
+        Simulate(world, std::min(0.5, 0.5 / v), &state);
+        speed[tiled] = state.bodies[0].v_WB.x();
+      }
+      EXPECT_NEAR(speed[1], speed[0], 1e-3 * speed[0]) << ShapeKind(shape) << " at " << v << " m/s";
+    }
+  }
+}
+
+TEST(StaticsTest, WhatFliesAtTheEndOfABoardIsStoppedByIt) {
+  // Below the board's level, and at its level but falling: neither slides over it.
+  for (const double drop : {-0.004, 0.00005}) {
+    for (const Shape& shape :
+         {Shape(Cylinder{0.02, 0.03}), Shape(Box{Vector3(0.04, 0.04, 0.03)})}) {
+      Scene scene =
+          MakeScene(MakeMovable("body", shape, At(-0.026, 0, 0.015 + drop), 0.2, 0.2),
+                    {MakeFixed("board", Box{Vector3(0.4, 0.4, 0.05)}, At(0.2, 0, -0.025), 0.2)});
+      const World world(scene);
+      WorldState state = world.InitialState();
+      state.bodies[0].v_WB = Vector3(0.8, 0.0, drop < 0.0 ? 0.0 : -0.6);
+      Simulate(world, 0.05, &state);
+      EXPECT_LT(state.bodies[0].p_WB.x(), -0.019) << ShapeKind(shape) << " at " << drop;
+      EXPECT_LT(state.bodies[0].v_WB.x(), 0.01) << ShapeKind(shape) << " at " << drop;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pregrasp

@@ -121,6 +121,36 @@ TEST(WorldTest, ContactPointsCarryTheWeight) {
   EXPECT_LT((force - Vector3(0, 0, -0.3 * kGravity)).norm(), 1e-4);
 }
 
+TEST(WorldTest, AStepThatDoesNotConvergeSaysHowFastBodiesStillApproach) {
+  const Scene scene = MakeScene(
+      MakeBox("heavy", Vector3(0.1, 0.1, 0.1), At(0, 0, 0.06), 1.6, 0.4),
+      {MakeTable(), MakeBox("light", Vector3(0.1, 0.1, 0.01), At(0, 0, 0.005), 0.2, 0.4)});
+  StepConfig config;
+  config.max_sweeps = 1;
+  for (const bool simbody : {false, true}) {
+    const World world(scene, config);
+    WorldState state = world.InitialState();
+    const Convergence first = simbody ? world.StepWithSimbody(state) : world.Step(state);
+    EXPECT_FALSE(first.converged);
+    // A share of gravity's velocity is left, and in the step the gap above or below the light body
+    // closes that fast.
+    EXPECT_GT(first.residual, 0.05 * kGravity * config.dt);
+    EXPECT_LT(first.residual, 1.001 * kGravity * config.dt);
+    const double above = state.bodies[0].p_WB.z() - state.bodies[1].p_WB.z() - 0.055;
+    const double below = state.bodies[1].p_WB.z() - 0.005;
+    EXPECT_NEAR(std::min(above, below), -first.residual * config.dt, 1e-9);
+  }
+  const World world(scene);
+  WorldState state = world.InitialState();
+  for (int i = 0; i < 240; ++i) {
+    const StepTrace trace = world.StepWithTrace(state);
+    if (i > 10) {
+      EXPECT_TRUE(trace.convergence.converged) << i;
+      EXPECT_EQ(trace.convergence.residual, 0.0);
+    }
+  }
+}
+
 TEST(WorldTest, ATraceTellsOfASlidingBoxItsFrictionItsSlipAndTheEnergyTheyTake) {
   const double mass = 0.3, mu = 0.5;
   const World world(MakeBoxOnTable());

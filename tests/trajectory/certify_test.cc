@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "app/geometry/mass_properties.h"
 #include "tests/trajectory/ruler_fixture.h"
 
 namespace pregrasp {
@@ -65,6 +68,65 @@ TEST_F(CertifyTest, AFingertipInsideTheTableIsNotCertified) {
   const Certificate result = Certify(plan);
   ASSERT_FALSE(result.certified);
   EXPECT_EQ(result.reasons.front(), CertifyReason::kTipOverlap);
+}
+
+// Eight boxes on each other, the object on top: hard for a solver that sweeps.
+Scene MakeTower() {
+  Scene scene = MakeRulerScene();
+  for (int i = 0; i < 8; ++i) {
+    Body box = scene.bodies[0];
+    box.name = "box" + std::to_string(i);
+    box.shape = Box{Vector3(0.1, 0.1, 0.1)};
+    box.X_WB.translation() << -0.3, 0.0, 0.75 - 0.1 * i;
+    box.mass_properties = CalcMassProperties(box.shape, 0.3);
+    if (i == 0) {
+      scene.bodies[0] = box;
+    } else {
+      scene.bodies.push_back(box);
+    }
+  }
+  return scene;
+}
+
+// A finger presses the object's top, by a world and one of half its step that differ in nothing
+// else.
+Certificate CertifyPress(StepConfig config) {
+  const Scene scene = MakeTower();
+  const World world(scene, config);
+  config.dt /= 2;
+  const World half_world(scene, config);
+  const EnvironmentDistance environment(scene);
+  WorldPlan plan;
+  plan.stages.resize(1);
+  plan.stages[0][1].on = true;
+  plan.stages[0][1].contact = {true, Vector3(0.0, 0.0, 0.05), Vector3::UnitZ()};
+  plan.stages[0][1].p_WTargets.assign(4, Vector3(-0.3, 0.0, 0.78));
+  return CertifyPlan(world, half_world, environment, world.InitialState(), plan, PlanTiming(),
+                     CertifyConfig());
+}
+
+TEST(CertifyConvergenceTest, APlanWhoseContactForcesWereNotFoundIsNotCertified) {
+  StepConfig config;
+  config.max_sweeps_many = 3;
+  const Certificate result = CertifyPress(config);
+  EXPECT_FALSE(result.certified);
+  EXPECT_EQ(std::count(result.reasons.begin(), result.reasons.end(), CertifyReason::kNotConverged),
+            1);
+  EXPECT_GT(result.full.unresolved, 1e-3);
+  EXPECT_GT(result.full.max_residual, 0.0);
+  EXPECT_LE(result.full.unresolved, result.full.max_residual * result.full.unconverged_seconds);
+}
+
+TEST(CertifyConvergenceTest, WhatIsLeftAtRestBelowTheToleranceDoesNotMatter) {
+  const Certificate usual = CertifyPress({});
+  EXPECT_TRUE(usual.certified);
+  EXPECT_LT(usual.full.unresolved, 1e-4);
+  StepConfig config;
+  config.tolerance_many = 0.0;  // no step ever converges
+  const Certificate result = CertifyPress(config);
+  EXPECT_TRUE(result.certified);
+  EXPECT_NEAR(result.full.unconverged_seconds, result.full.seconds, 1e-9);
+  EXPECT_LT(result.full.unresolved, 1e-4);
 }
 
 }  // namespace
