@@ -32,7 +32,8 @@ const Schema kSceneKeys{"SceneTable",
                         {"name", "object", "environment", "fingertips", "gravity", "camera"}};
 const Schema kBodyKeys{"BodyTable",
                        {"name", "shape", "p", "rpy_deg", "mass", "friction", "com", "inertia"}};
-const Schema kFingertipKeys{"FingertipsTable", {"friction", "max_force", "stiffness", "damping"}};
+const Schema kFingertipKeys{"FingertipsTable",
+                            {"friction", "max_force", "stiffness", "damping", "grasp_stiffness"}};
 const Schema kCameraKeys{"CameraTable", {"p", "look_at", "fov_deg"}};
 const Schema kPlacedKeys{"PlacedShapeTable", {"shape", "p", "rpy_deg"}};
 const Schema kBoxKeys{"BoxTable", {"x", "y", "z"}};
@@ -222,6 +223,7 @@ FingertipConfig ReadFingertips(lua_State* L, const Fields& scene) {
   config.max_force = fields.Optional<double>("max_force", config.max_force);
   config.stiffness = fields.Optional<double>("stiffness", config.stiffness);
   config.damping = fields.Optional<double>("damping", config.damping);
+  config.grasp_stiffness = fields.Optional<double>("grasp_stiffness", config.grasp_stiffness);
   lua_pop(L, 1);
   return config;
 }

@@ -123,6 +123,7 @@ void ValidateFingertips(const std::string& where, const FingertipConfig& tips) {
   RequireFriction(where, "fingertips.friction", tips.friction);
   RequirePositive(where, "fingertips.max_force", tips.max_force);
   RequirePositive(where, "fingertips.stiffness", tips.stiffness);
+  RequirePositive(where, "fingertips.grasp_stiffness", tips.grasp_stiffness);
   if (!(std::isfinite(tips.damping) && tips.damping >= 0.0)) {
     throw InputError(where, "fingertips.damping", "a number of at least 0",
                      FormatDouble(tips.damping));
@@ -188,6 +189,10 @@ std::vector<std::string> RuleDepartures(const Scene& scene) {
   if (scene.fingertips.max_force > 15.0) {
     departures.push_back(
         fmt::format("fingertips.max_force {} N is above 15 N", scene.fingertips.max_force));
+  }
+  if (!(scene.fingertips.grasp_stiffness >= 150.0 && scene.fingertips.grasp_stiffness <= 600.0)) {
+    departures.push_back(fmt::format("fingertips.grasp_stiffness {} N/m is outside 150 to 600 N/m",
+                                     scene.fingertips.grasp_stiffness));
   }
   if ((scene.gravity - Vector3(0.0, 0.0, -9.81)).norm() > 1e-12) {
     departures.push_back(fmt::format("gravity is ({}, {}, {}) instead of (0, 0, -9.81) m/s^2",

@@ -88,6 +88,7 @@ Setters SettersOf(Scene& scene) {
   setters["fingertips.max_force"] = SetNumber(scene.fingertips.max_force);
   setters["fingertips.stiffness"] = SetNumber(scene.fingertips.stiffness);
   setters["fingertips.damping"] = SetNumber(scene.fingertips.damping);
+  setters["fingertips.grasp_stiffness"] = SetNumber(scene.fingertips.grasp_stiffness);
   if (scene.camera) {
     setters["camera.p"] = SetVector(scene.camera->p_WCam);
     setters["camera.look_at"] = SetVector(scene.camera->p_WTarget);

@@ -90,8 +90,9 @@ function pregrasp.union(parts) end
 ---@class FingertipsTable
 ---@field friction? number 0.8, between a fingertip and any body
 ---@field max_force? number 12 N
----@field stiffness? number 50 N/m
+---@field stiffness? number 50 N/m, while pushing
 ---@field damping? number 0.7, a multiple of sqrt(stiffness * object's mass)
+---@field grasp_stiffness? number 300 N/m, while a grasp closes and lifts
 
 ---@class CameraTable
 ---@field p Vector3 where it stands [m]

@@ -62,6 +62,8 @@ TEST(ValidateSceneTest, NamesTheLineAndFieldThatIsWrong) {
       {[](Scene& s) { s.gravity.z() = kNan; }, "scene.lua:1: gravity: "},
       {[](Scene& s) { s.fingertips.max_force = 0; }, "scene.lua:1: fingertips.max_force: "},
       {[](Scene& s) { s.fingertips.damping = -1; }, "scene.lua:1: fingertips.damping: "},
+      {[](Scene& s) { s.fingertips.grasp_stiffness = 0; },
+       "scene.lua:1: fingertips.grasp_stiffness: "},
       {[](Scene& s) { s.camera = CameraConfig{}; }, "scene.lua:1: camera.look_at: "},
   };
   for (const auto& [change, start] : cases) {
@@ -92,7 +94,21 @@ TEST(RuleDeparturesTest, AreNamedOneByOne) {
   scene.fingertips.max_force = 20;
   scene.gravity.z() = -1.62;
   scene.bodies[1].friction = 0.9;
-  EXPECT_EQ(RuleDepartures(scene).size(), 4U);
+  scene.fingertips.grasp_stiffness = 1500;
+  EXPECT_EQ(RuleDepartures(scene).size(), 5U);
+}
+
+TEST(RuleDeparturesTest, AGraspIsAsStiffAsAFinger150To600NewtonsAMetre) {
+  for (const double k : {150.0, 300.0, 600.0}) {
+    Scene scene = MakeScene();
+    scene.fingertips.grasp_stiffness = k;
+    EXPECT_TRUE(RuleDepartures(scene).empty()) << k;
+  }
+  for (const double k : {149.0, 601.0}) {
+    Scene scene = MakeScene();
+    scene.fingertips.grasp_stiffness = k;
+    EXPECT_EQ(RuleDepartures(scene).size(), 1U) << k;
+  }
 }
 
 }  // namespace

@@ -40,11 +40,13 @@ std::string Failure(const std::string& assignment) {
 TEST(SettingsTest, ChangeTheSceneByKey) {
   Scene scene = MakeObjectOnTable();
   Set(scene, "fingertips.friction=0.05");
+  Set(scene, "fingertips.grasp_stiffness=450");
   Set(scene, "environment.table.friction=0.25");
   Set(scene, "environment.table.p=0,0,-0.05");
   Set(scene, "object.rpy_deg={0,0,90}");
   Set(scene, "gravity=0,0,-1.62");
   EXPECT_EQ(scene.fingertips.friction, 0.05);
+  EXPECT_EQ(scene.fingertips.grasp_stiffness, 450.0);
   EXPECT_EQ(scene.bodies[1].friction, 0.25);
   EXPECT_EQ(scene.bodies[1].X_WB.translation(), Vector3(0, 0, -0.05));
   EXPECT_NEAR(scene.object().X_WB.linear()(1, 0), 1.0, 1e-15);
