@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "app/scene/limits.h"
 #include "bindings/function.h"
 #include "bindings/machine.h"
 
@@ -119,6 +120,9 @@ ShapePtr MakeFileShape(OneTable table) {
 RigidTransform ReadPose(const Fields& fields) {
   const Vector3 p = fields.Optional<Vector3>("p", Vector3::Zero());
   const Vector3 rpy_deg = fields.Optional<Vector3>("rpy_deg", Vector3::Zero());
+  for (const double angle : rpy_deg) {
+    RequireWithin(fields.where(), fields.Path("rpy_deg"), kAngleRange, angle);
+  }
   return MakeTransform(RotationFromRpy(rpy_deg * (kPi / 180.0)), p);
 }
 

@@ -72,6 +72,17 @@ TEST(ValidateSceneTest, NamesTheLineAndFieldThatIsWrong) {
   }
 }
 
+TEST(ValidateSceneTest, NoFingertipIsMadeOfWhatIsNoNumber) {
+  for (double FingertipConfig::*field :
+       {&FingertipConfig::friction, &FingertipConfig::max_force, &FingertipConfig::stiffness,
+        &FingertipConfig::grasp_stiffness, &FingertipConfig::damping}) {
+    for (const double value : {kNan, kInf, -kInf, -1.0, 1e300}) {
+      const std::string line = FailureAfter([&](Scene& s) { s.fingertips.*field = value; });
+      EXPECT_EQ(line.find("scene.lua:1: fingertips."), 0U) << value << " gives " << line;
+    }
+  }
+}
+
 TEST(ValidateSceneTest, AnInertiaMustBeThatOfARigidBody) {
   const auto with = [](double a, double b, double c, double ab = 0.0) {
     return FailureAfter([=](Scene& s) {
@@ -85,6 +96,13 @@ TEST(ValidateSceneTest, AnInertiaMustBeThatOfARigidBody) {
   EXPECT_NE(with(1, 1, 2.01), "");
   EXPECT_NE(with(1, -1, 1), "");
   EXPECT_NE(with(1, 1, 1, 1.5), "");  // not positive
+}
+
+TEST(RuleDeparturesTest, WhatIsNoNumberIsNotWithinTheRules) {
+  Scene scene = MakeScene();
+  scene.fingertips.friction = scene.fingertips.max_force = scene.gravity.z() = kNan;
+  scene.fingertips.grasp_stiffness = scene.object().friction = kNan;
+  EXPECT_EQ(RuleDepartures(scene).size(), 5U);
 }
 
 TEST(RuleDeparturesTest, AreNamedOneByOne) {
