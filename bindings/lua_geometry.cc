@@ -1,6 +1,7 @@
 #include "app/geometry/contact_mesh.h"
 #include "app/geometry/point_cloud.h"
 #include "app/geometry/signed_distance.h"
+#include "app/job/planner_settings.h"
 #include "bindings/lua_session.h"
 
 namespace pregrasp {
@@ -15,9 +16,7 @@ constexpr int kMaxPoints = 4096;  // farthest-point sampling grows with the squa
 }  // namespace
 
 Pushed PushCloud(lua_State* L, Session& session, int points) {
-  if (points < 1 || points > kMaxPoints) {
-    throw InputError("", "points", "1 to 4096", std::to_string(points));
-  }
+  RequireWithin("", "points", {1, kMaxPoints, 1}, points);
   const PointCloud cloud = SamplePointCloud(session.scene().object().shape, points,
                                             Rng(session.config().seed, RngStream::kObjectCloud));
   RecordWriter(L, kCloud)
@@ -34,6 +33,7 @@ Pushed PushDistance(lua_State* L, Session& session, const Vector3& p_W) {
 }
 
 Pushed PushContactMesh(lua_State* L, Session& session, int triangles) {
+  RequireWithin("", "triangles", FindPlannerSetting("mesh.triangles").range, triangles);
   ContactMeshConfig config;
   config.triangles = triangles;
   PushMesh(L, BuildContactMesh(session.scene().object().shape, config));

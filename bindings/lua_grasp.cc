@@ -4,6 +4,7 @@
 
 #include "app/grasp/wrench.h"
 #include "app/hand/ik.h"
+#include "app/job/planner_settings.h"
 #include "bindings/lua_session.h"
 
 namespace pregrasp {
@@ -124,6 +125,7 @@ void TurnNormalsOutward(const Session* session, std::vector<IkContact>& contacts
 
 Pushed Ik(lua_State* L, IkOptions& options) {
   IkConfig config;
+  RequireWithin("", "max_starts", FindPlannerSetting("grasps.starts").range, options.max_starts);
   config.max_starts = options.max_starts;
   config.Validate();
   TurnNormalsOutward(options.session.get(), options.contacts);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "app/scene/limits.h"
 #include "bindings/function.h"
 #include "bindings/machine.h"
 
@@ -32,7 +33,8 @@ const Schema kSceneKeys{"SceneTable",
                         {"name", "object", "environment", "fingertips", "gravity", "camera"}};
 const Schema kBodyKeys{"BodyTable",
                        {"name", "shape", "p", "rpy_deg", "mass", "friction", "com", "inertia"}};
-const Schema kFingertipKeys{"FingertipsTable", {"friction", "max_force", "stiffness", "damping"}};
+const Schema kFingertipKeys{"FingertipsTable",
+                            {"friction", "max_force", "stiffness", "damping", "grasp_stiffness"}};
 const Schema kCameraKeys{"CameraTable", {"p", "look_at", "fov_deg"}};
 const Schema kPlacedKeys{"PlacedShapeTable", {"shape", "p", "rpy_deg"}};
 const Schema kBoxKeys{"BoxTable", {"x", "y", "z"}};
@@ -118,6 +120,9 @@ ShapePtr MakeFileShape(OneTable table) {
 RigidTransform ReadPose(const Fields& fields) {
   const Vector3 p = fields.Optional<Vector3>("p", Vector3::Zero());
   const Vector3 rpy_deg = fields.Optional<Vector3>("rpy_deg", Vector3::Zero());
+  for (const double angle : rpy_deg) {
+    RequireWithin(fields.where(), fields.Path("rpy_deg"), kAngleRange, angle);
+  }
   return MakeTransform(RotationFromRpy(rpy_deg * (kPi / 180.0)), p);
 }
 
@@ -222,6 +227,7 @@ FingertipConfig ReadFingertips(lua_State* L, const Fields& scene) {
   config.max_force = fields.Optional<double>("max_force", config.max_force);
   config.stiffness = fields.Optional<double>("stiffness", config.stiffness);
   config.damping = fields.Optional<double>("damping", config.damping);
+  config.grasp_stiffness = fields.Optional<double>("grasp_stiffness", config.grasp_stiffness);
   lua_pop(L, 1);
   return config;
 }

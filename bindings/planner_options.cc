@@ -1,48 +1,52 @@
 #include "bindings/planner_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace pregrasp {
 namespace {
 
-// The options of one stage: a schema whose keys come from the planner's own list of fields.
+// The options of one stage: a schema whose keys are those of the table of settings.
 struct StageKeys {
   Schema schema;
-  std::vector<std::string> names;  // in full, by key
+  std::vector<const PlannerSetting*> settings;  // by key
 };
 
-// All fields below `roots`, or those of them that are listed.
+// All settings below `roots`, or those of them that are listed.
 StageKeys MakeKeys(const std::string& name, const std::vector<std::string>& roots,
                    const std::vector<std::string>& only = {}) {
+  const auto is_in = [](const std::vector<std::string>& list, const std::string& word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+  };
   StageKeys keys{{name, {}}, {}};
-  const nlohmann::json all = PlannerConfigJson({});
-  for (const std::string& root : roots) {
-    for (const auto& [key, value] : all.at(root).items()) {
-      if (!only.empty() && std::find(only.begin(), only.end(), key) == only.end()) continue;
-      keys.schema.keys.push_back(key);
-      keys.names.push_back(root + '.' + key);
-    }
+  for (const PlannerSetting& setting : SettingsTable()) {
+    if (!is_in(roots, setting.root()) || (!only.empty() && !is_in(only, setting.key()))) continue;
+    keys.schema.keys.push_back(setting.key());
+    keys.settings.push_back(&setting);
   }
   return keys;
 }
 
-FieldValue ReadFieldValue(lua_State* L, const Fields& fields, const std::string& key) {
-  fields.Push(key);
+// Any number, boolean or text: which of them, and within which range, the table says.
+FieldValue ReadFieldValue(lua_State* L, const Fields& fields, const PlannerSetting& setting) {
+  fields.Push(setting.key());
   const int type = lua_type(L, -1);
+  const double number = lua_tonumber(L, -1);
   lua_pop(L, 1);
-  if (type == LUA_TBOOLEAN) return fields.Required<bool>(key);
-  if (type == LUA_TSTRING) return fields.Required<std::string>(key);
-  return fields.Required<double>(key);
+  if (type == LUA_TNUMBER) return number;
+  if (type == LUA_TBOOLEAN) return fields.Required<bool>(setting.key());
+  if (type == LUA_TSTRING) return fields.Required<std::string>(setting.key());
+  fields.Refuse(setting.key(), setting.Expected());
 }
 
 template <typename Options>
 Options ReadOptions(lua_State* L, int index, const StageKeys& keys) {
   const Fields fields(L, index, keys.schema);
   Options options;
-  for (std::size_t i = 0; i < keys.names.size(); ++i) {
-    const std::string& key = keys.schema.keys[i];
-    if (!fields.Has(key)) continue;
-    options.fields.emplace_back(keys.names[i], ReadFieldValue(L, fields, key));
+  for (const PlannerSetting* setting : keys.settings) {
+    if (!fields.Has(setting->key())) continue;
+    options.fields.emplace_back(setting, ReadFieldValue(L, fields, *setting));
   }
   return options;
 }
@@ -76,19 +80,61 @@ const StageKeys& MotionKeys() {
   return keys;
 }
 
+std::vector<const StageKeys*> AllKeys() {
+  return {&GraphKeys(),   &PruneKeys(),  &PathsKeys(), &OptimizeKeys(),
+          &CertifyKeys(), &GraspsKeys(), &MotionKeys()};
+}
+
 }  // namespace
 
 nlohmann::json StageOptions::ToSettings() const {
   PlannerConfig scratch;
   nlohmann::json settings = nlohmann::json::object();
-  for (const auto& [name, value] : fields) {
-    SetPlannerField(scratch, name, value);
-    const std::size_t dot = name.find('.');
-    // As the configuration has it, so that 48.0 is 48.
-    settings[name] = PlannerConfigJson(scratch)[name.substr(0, dot)][name.substr(dot + 1)];
+  for (const auto& [setting, value] : fields) {
+    try {
+      setting->Set(scratch, value);
+    } catch (const InputError& error) {
+      throw InputError("", setting->key(), error.expected(), error.got());
+    }
+    settings[setting->name] = setting->GetJson(scratch);  // so that 48.0 is 48
   }
   scratch.Validate();
   return settings;
+}
+
+namespace {
+
+// The type of a setting in LuaCATS: boolean, "reverse"|"forward", integer or number.
+std::string TypeText(const PlannerSetting& setting) {
+  if (setting.is_number()) return setting.range.step > 0 ? "integer" : "number";
+  std::string words;
+  for (const std::string& word : setting.choices()) {
+    words += (words.empty() ? "\"" : "|\"") + word + '"';
+  }
+  return words.empty() ? "boolean" : words;
+}
+
+// As lua/meta/pregrasp.lua has it.
+std::string OptionAnnotation(const PlannerSetting& setting) {
+  std::string text =
+      fmt::format("---@field {}? {} {}", setting.key(), TypeText(setting), setting.meaning);
+  if (setting.is_number()) text += ", " + setting.range.Text();
+  if (setting.range.step == 2) text += ", even";
+  const std::string rule = setting.rule.Text();
+  if (!rule.empty()) text += ", within the rules " + rule;
+  return text + "; " + FieldText(setting.Default());
+}
+
+}  // namespace
+
+std::vector<std::string> OptionAnnotations(const Schema& schema) {
+  std::vector<std::string> lines;
+  for (const StageKeys* keys : AllKeys()) {
+    if (&keys->schema != &schema) continue;
+    for (const PlannerSetting* setting : keys->settings)
+      lines.push_back(OptionAnnotation(*setting));
+  }
+  return lines;
 }
 
 GraphOptions LuaValue<GraphOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
@@ -116,8 +162,9 @@ MotionOptions LuaValue<MotionOptions>::Read(lua_State* L, int index, const std::
 }
 
 std::vector<const Schema*> StageOptionSchemas() {
-  return {&GraphKeys().schema,   &PruneKeys().schema,  &PathsKeys().schema, &OptimizeKeys().schema,
-          &CertifyKeys().schema, &GraspsKeys().schema, &MotionKeys().schema};
+  std::vector<const Schema*> schemas;
+  for (const StageKeys* keys : AllKeys()) schemas.push_back(&keys->schema);
+  return schemas;
 }
 
 }  // namespace pregrasp

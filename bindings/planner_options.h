@@ -9,12 +9,13 @@
 
 namespace pregrasp {
 
-/// Settings of a planner's stage as a script gives them: a key is the last part of the field's name
-/// ("samples" of "mppi.samples").
+/// Settings of a planner's stage as a script gives them: a key is the last part of the setting's
+/// name ("samples" of "mppi.samples").
 struct StageOptions {
-  std::vector<std::pair<std::string, FieldValue>> fields;  ///< full names
+  std::vector<std::pair<const PlannerSetting*, FieldValue>> fields;
 
-  /// The same as a command's `settings`. @throws InputError for a value that does not fit.
+  /// The same as a command's `settings`. @throws InputError that names the key, for a value that
+  /// does not fit.
   nlohmann::json ToSettings() const;
 };
 
@@ -56,5 +57,9 @@ struct LuaValue<MotionOptions> {
 };
 
 std::vector<const Schema*> StageOptionSchemas();
+
+/// The lines of the manual (lua/meta/pregrasp.lua) for the options of one of those schemas, from
+/// the table of settings.
+std::vector<std::string> OptionAnnotations(const Schema& schema);
 
 }  // namespace pregrasp

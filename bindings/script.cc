@@ -111,6 +111,7 @@ std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions
   RequireNoSettingsLeft(options.settings, PlannerRoots());
   config.seed = static_cast<std::uint64_t>(
       options.seed.value_or(static_cast<std::int64_t>(context.config.machine.seed)));
+  if (options.threads) RequireWithin("", "threads", ThreadPool::kThreads, *options.threads);
   config.threads = options.threads.value_or(context.config.threads);
   config.pictures = context.config.pictures;
   config.command = context.config.remake;

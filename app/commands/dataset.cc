@@ -23,6 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr NumberRange kItems{1, 1e9, 1};
+
 struct MakeOptions {
   DatasetRun run;
   ItemOptions items;
@@ -70,9 +72,13 @@ int MakeLabels(MakeOptions& options) {
 
 void AddMakeOptions(const Subcommand& command, MakeOptions& options) {
   command.Add("--out", options.run.folder, "Folder for the items, one file each").Required();
-  command.Add("--items", options.run.items, "Objects in the whole data set").ShowDefault();
+  command.Add("--items", options.run.items, "Objects in the whole data set")
+      .Within(kItems)
+      .ShowDefault();
   command.Add("--shard", options.shard, "i/n: make every n-th item, from the i-th").ShowDefault();
-  command.Add("--threads", options.run.threads, "Threads; 0 is one per processor").ShowDefault();
+  command.Add("--threads", options.run.threads, "Threads; 0 is one per processor")
+      .Within(ThreadPool::kThreads)
+      .ShowDefault();
   options.items.AddTo(command);
 }
 
@@ -102,13 +108,10 @@ void AddMerge(const Subcommand& dataset, Action& action) {
   const Subcommand command =
       dataset.AddCommand("merge", "Put the items of shards together, for pregrasp-train");
   command.Add("FOLDERS", options->folders, "Where the items were made").Required();
-  command.Add("--items", options->items, "Take items 0 to this less 1").Required();
+  command.Add("--items", options->items, "Take items 0 to this less 1").Within(kItems).Required();
   command.Add("--out", options->out, "Folder of the merged data set").Required();
   command.OnChosen([options, &action] {
     action = [options] {
-      if (options->items < 1) {
-        throw InputError("--items", "", "at least 1", std::to_string(options->items));
-      }
       MergeDataset(options->folders, options->items, options->out);
       return 0;
     };
@@ -118,7 +121,9 @@ void AddMerge(const Subcommand& dataset, Action& action) {
 }  // namespace
 
 void ItemOptions::AddTo(const Subcommand& command) {
-  command.Add("--scenes", config.scenes, "Scenes of each object").ShowDefault();
+  command.Add("--scenes", config.scenes, "Scenes of each object")
+      .Within({1, 1000, 1})
+      .ShowDefault();
   command.AddSeed(config.seed, "Seed of everything random");
   command.Add("--exclude", excluded,
               "Scenes whose objects no training object may resemble; without this option, "
@@ -126,8 +131,12 @@ void ItemOptions::AddTo(const Subcommand& command) {
 }
 
 void ItemOptions::AddLabelsTo(const Subcommand& command) {
-  command.Add("--labels", config.labels.per_scene, "Labels of each scene").ShowDefault();
-  command.Add("--tries", config.labels.tries, "Completions at each relief").ShowDefault();
+  command.Add("--labels", config.labels.per_scene, "Labels of each scene")
+      .Within({1, 10'000, 1})
+      .ShowDefault();
+  command.Add("--tries", config.labels.tries, "Completions at each relief")
+      .Within({1, 1000, 1})
+      .ShowDefault();
 }
 
 ItemConfig ItemOptions::Resolve() const {

@@ -137,7 +137,7 @@ void AddDatasetPictures(const Subcommand& dataset, Action& action) {
   command.Add("GRASPS", options->grasps, "Merged data set of grasps").Required();
   command.Add("--generator", options->generator, "Weights of the grasp generators").Required();
   command.Add("--out", options->out, "Folder of the sheets").Required();
-  command.Add("--count", options->count, "Labels").Within(1, 100'000).ShowDefault();
+  command.Add("--count", options->count, "Labels").Within({1, 100'000, 1}).ShowDefault();
   options->items.AddTo(command);
   options->items.AddLabelsTo(command);
   command.OnChosen([options, &action] { action = [options] { return MakePictures(*options); }; });

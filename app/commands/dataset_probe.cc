@@ -188,15 +188,17 @@ void AddDatasetProbe(const Subcommand& dataset, Action& action) {
   command.Add("--score", options->score, "Weights of the score function");
   command.Add("--generator", options->generator, "Weights of the grasp generators");
   command.Add("--direction", options->direction, "x,y,z in the world").CommaSeparated(3);
-  command.Add("--distance", options->distance, "How far it is moved at most [m]").ShowDefault();
-  command.Add("--steps", options->steps, "Into so many steps").Within(1, 1000).ShowDefault();
+  command.Add("--distance", options->distance, "How far it is moved at most [m]")
+      .Within({0.0, 10.0})
+      .ShowDefault();
+  command.Add("--steps", options->steps, "Into so many steps").Within({1, 1000, 1}).ShowDefault();
   command.Add("--contacts", options->contacts, "Contacts that the scores are the mean of")
-      .Within(1, 100'000)
+      .Within({1, 100'000, 1})
       .ShowDefault();
   command
       .Add("--tries", options->tries,
            "Make labels too, with so many completions at each relief; takes minutes")
-      .Within(0, 1000)
+      .Within({0, 1000, 1})
       .ShowDefault();
   command.AddSeed(options->seed, "Seed of everything random");
   command.OnChosen([options, &action] { action = [options] { return Probe(*options); }; });

@@ -3,12 +3,14 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "app/commands/commands.h"
 #include "app/core/data_folder.h"
+#include "app/job/planner_settings.h"
 #include "app/recording/build_info.h"
 #include "bindings/machine.h"
 #include "bindings/scene_file.h"
@@ -59,6 +61,17 @@ std::string Weights() {
   return text;
 }
 
+// The whole table of a planner's settings, a line each.
+int PrintSettings() {
+  fmt::print("{:<25} {:<8} {:<18} {}\n", "--set", "default", "values", "meaning");
+  for (const PlannerSetting& setting : SettingsTable()) {
+    const std::string rule = setting.rule.Text();
+    fmt::print("{:<25} {:<8} {:<18} {}{}\n", setting.name, FieldText(setting.Default()),
+               setting.Values(), setting.meaning, rule.empty() ? "" : "; within the rules " + rule);
+  }
+  return 0;
+}
+
 int Info() {
   Line("pregrasp", fmt::format("{}, commit {}", ProgramVersion(), GitHash()));
   Line("data", DataFolder().string());
@@ -79,9 +92,14 @@ int Info() {
 }  // namespace
 
 void AddInfo(const Subcommand& app, Action& action) {
+  auto settings = std::make_shared<bool>(false);
   const Subcommand command =
       app.AddCommand("info", "Versions, OpenGL renderer, weights, processor");
-  command.OnChosen([&action] { action = [] { return Info(); }; });
+  command.AddFlag("--settings", *settings,
+                  "Instead: every setting that --set takes beside the scene's, with its default");
+  command.OnChosen([settings, &action] {
+    action = [settings] { return *settings ? PrintSettings() : Info(); };
+  });
 }
 
 }  // namespace pregrasp

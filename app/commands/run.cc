@@ -57,7 +57,8 @@ int Run(const RunOptions& options) {
   PlannerConfig config;
   ApplyPlannerSettings(config, settings);
   RequireNoSettingsLeft(settings, PlannerRoots());
-  for (const std::string& departure : RuleDepartures(scene)) {
+  config.Validate();
+  for (const std::string& departure : RuleDepartures(scene, config)) {
     fmt::print(stderr, "{}: warning: {}\n", options.scene, departure);
   }
 
@@ -103,11 +104,16 @@ void AddRun(const Subcommand& app, Action& action) {
   command.AddSeed(options->seed, "Seed of everything random");
   command.Add("--out", options->out,
               "The run directory; out/NAME by default. A finished run there is replaced");
-  command.Add("--paths", options->run.paths, "Paths to optimise at most").ShowDefault();
+  command.Add("--paths", options->run.paths, "Paths to optimise at most")
+      .Within(RunConfig::kPaths)
+      .ShowDefault();
   command.AddFlag("--all", options->run.all, "Go on after the first success");
-  command.Add("--threads", options->threads, "Threads; 0 is one per processor").ShowDefault();
+  command.Add("--threads", options->threads, "Threads; 0 is one per processor")
+      .Within(ThreadPool::kThreads)
+      .ShowDefault();
   command
-      .Add("--set", options->settings, "Change a value: fingertips.friction=0.05, mppi.samples=64")
+      .Add("--set", options->settings,
+           "Change a value: fingertips.friction=0.05, mppi.samples=64; info --settings lists all")
       .OneAtATime();
   command.Add("--pictures", options->pictures, "none, key or all").ShowDefault();
   command.Add("--weights", options->weights, "Folder of the networks' weights");

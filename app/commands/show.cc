@@ -40,6 +40,8 @@ void SetSize(const std::string& size, PictureConfig& config) {
   if (!(in >> width >> x >> height) || x != 'x' || in.peek() != EOF) {
     throw InputError("--size", "", "WIDTHxHEIGHT in pixels", '"' + size + '"');
   }
+  for (const int pixels : {width, height})
+    RequireWithin("--size", "", {16, 8192, 1, "pixels"}, pixels);
   config.width = width;
   config.height = height;
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -12,8 +13,17 @@ Option Option::Required() const { return Option(*option_->required()); }
 
 Option Option::ShowDefault() const { return Option(*option_->capture_default_str()); }
 
-Option Option::Within(int least, int most) const {
-  return Option(*option_->check(CLI::Range(least, most)));
+Option Option::Within(const NumberRange& range) const {
+  const CLI::Validator within(
+      [range](const std::string& text) {
+        double value = 0.0;
+        const char* end = text.data() + text.size();
+        const auto [rest, error] = std::from_chars(text.data(), end, value);
+        const bool fits = error == std::errc() && rest == end && range.Contains(value);
+        return fits ? std::string() : "expected " + range.Expected() + ", got \"" + text + '"';
+      },
+      range.Text());
+  return Option(*option_->check(within));
 }
 
 Option Option::OneAtATime() const { return Option(*option_->allow_extra_args(false)); }

@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "app/core/number_range.h"
+
 namespace CLI {
 class App;
 class Option;
@@ -19,8 +21,8 @@ class Option {
   Option Required() const;
   /// The help says the default.
   Option ShowDefault() const;
-  /// A whole number from `least` to `most`.
-  Option Within(int least, int most) const;
+  /// A number of the range; else one line that names the option and the range.
+  Option Within(const NumberRange& range) const;
   /// A list takes one element each time that the option is given, else all that follow it.
   Option OneAtATime() const;
   /// A list of so many elements, which may be one word with commas.

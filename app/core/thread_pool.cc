@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "app/core/check.h"
+
 namespace pregrasp {
 
 struct ThreadPool::Impl {
@@ -56,7 +58,8 @@ struct ThreadPool::Impl {
 };
 
 ThreadPool::ThreadPool(int num_threads) : impl_(std::make_unique<Impl>()) {
-  if (num_threads <= 0) num_threads = std::max(1U, std::thread::hardware_concurrency());
+  PREGRASP_CHECK(kThreads.Contains(num_threads), num_threads);
+  if (num_threads == 0) num_threads = std::max(1U, std::thread::hardware_concurrency());
   for (int worker = 1; worker < num_threads; ++worker) {
     impl_->threads.emplace_back([this, worker] { impl_->Work(worker); });
   }

@@ -3,6 +3,8 @@
 #include <functional>
 #include <memory>
 
+#include "app/core/number_range.h"
+
 namespace pregrasp {
 
 /// A fixed set of workers for loops whose iterations are independent. Iterations may run in any
@@ -10,6 +12,9 @@ namespace pregrasp {
 /// index order.
 class ThreadPool {
  public:
+  /// How many threads a user may ask for.
+  static constexpr NumberRange kThreads{0, 256, 1};
+
   /// @param num_threads  workers including the calling thread; 0 means one per hardware thread.
   explicit ThreadPool(int num_threads = 0);
   ~ThreadPool();

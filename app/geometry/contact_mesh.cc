@@ -9,7 +9,6 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
-#include "app/core/text.h"
 #include "app/geometry/hull.h"
 #include "app/geometry/iso_surface.h"
 #include "app/geometry/mass_properties.h"
@@ -212,19 +211,9 @@ TriangleMesh SimplifySurface(const Shape& shape, int triangles) {
 
 }  // namespace
 
-void ContactMeshConfig::Validate() const {
-  if (triangles < 12 || triangles > 200 || triangles % 2 != 0) {
-    throw InputError("contact_mesh", "triangles", "an even number from 12 to 200",
-                     std::to_string(triangles));
-  }
-  if (!(convex_share > 0.0 && convex_share <= 1.0)) {
-    throw InputError("contact_mesh", "convex_share", "a share above 0 and at most 1",
-                     FormatDouble(convex_share));
-  }
-}
-
 TriangleMesh BuildContactMesh(const Shape& shape, const ContactMeshConfig& config) {
-  config.Validate();
+  PREGRASP_CHECK(config.triangles >= 12 && config.triangles % 2 == 0, config.triangles);
+  PREGRASP_CHECK(config.convex_share > 0.0 && config.convex_share <= 1.0, config.convex_share);
   const TriangleMesh surface = Tessellate(shape, kSegments);
   const double hull_volume = CalcVolume(CalcConvexHull(surface.V));
   const double volume =

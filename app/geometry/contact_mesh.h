@@ -5,12 +5,10 @@
 namespace pregrasp {
 
 struct ContactMeshConfig {
-  /// Number of triangles of the result, exact; even, 12 to 200. The paper uses 30 to 50.
+  /// Number of triangles of the result, exact; even, at least 12. The paper uses 30 to 50.
   int triangles = 40;
   /// A shape whose volume is at least this share of its hull's is meshed from its hull.
   double convex_share = 0.97;
-
-  void Validate() const;
 };
 
 /// The simplified mesh whose triangles are the planner's contact regions (paper, section "Contact

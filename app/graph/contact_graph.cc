@@ -6,7 +6,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
-#include "app/core/text.h"
+#include "app/core/finite.h"
 
 namespace pregrasp {
 namespace {
@@ -123,6 +123,10 @@ class NodeSampler {
   std::array<std::vector<TriangleSamples>, kNumPlanningFingers> samples_;
 };
 
+void RequireShare(double top_percent) {
+  PREGRASP_CHECK(top_percent > 0.0 && top_percent <= 100.0, top_percent);
+}
+
 // Node ids from the best `score` to the worst; of equal ones by the `other` score, then by id.
 std::vector<int> OrderBy(const std::vector<ContactNode>& nodes, double ContactNode::*score,
                          double ContactNode::*other) {
@@ -143,23 +147,10 @@ TieRule FindRule(const ContactNode& a, const ContactNode& b, double ContactNode:
 
 }  // namespace
 
-void ContactGraphConfig::Validate() const {
-  if (samples < 1 || samples > 1000) {
-    throw InputError("", "samples", "a whole number from 1 to 1000", std::to_string(samples));
-  }
-  if (!(top_percent > 0.0 && top_percent <= 100.0)) {
-    throw InputError("", "top_percent", "a number above 0 and at most 100",
-                     FormatDouble(top_percent));
-  }
-  if (!(min_tip_distance >= 0.0 && std::isfinite(min_tip_distance))) {
-    throw InputError("", "min_tip_distance", "a length of at least 0 m",
-                     FormatDouble(min_tip_distance));
-  }
-}
-
 ContactGraph::ContactGraph(TriangleMesh mesh, const ContactGraphConfig& config)
     : mesh_(std::move(mesh)), config_(config) {
-  config.Validate();
+  PREGRASP_CHECK(config.samples >= 1, config.samples);
+  RequireShare(config.top_percent);
   const int count = num_triangles();
   nodes_.reserve(static_cast<std::size_t>(count) * count);
   for (int thumb = 0; thumb < count; ++thumb) {
@@ -188,6 +179,7 @@ void ContactGraph::Score(const SignedDistance& shape, const PlacementScorer& con
       node.s_c = (thumb_c[thumb] + index_c[index] + both_c[index]) / 3.0;
       node.s_n = (thumb_n[thumb] + index_n[index] + both_n[index]) / 3.0;
       node.occluded = sampler.OccludedShare(thumb, index);
+      PREGRASP_CHECK(AreFinite(node.s_c, node.s_n, node.occluded), node.id);
     }
   }
   order_c_ = OrderBy(nodes_, &ContactNode::s_c, &ContactNode::s_n);
@@ -211,10 +203,8 @@ void ContactGraph::SetTopPercent(double top_percent) {
   if (num_prune_steps_ > 0) {
     throw InputError("", "top_percent", "a graph that is not pruned yet", "one that is");
   }
-  ContactGraphConfig config = config_;
-  config.top_percent = top_percent;
-  config.Validate();
-  config_ = config;
+  RequireShare(top_percent);
+  config_.top_percent = top_percent;
 }
 
 bool ContactGraph::PruneStep(int nodes) {

@@ -17,8 +17,6 @@ struct ContactGraphConfig {
   double top_percent = 5.0;
   /// Two tips closer than this cannot both touch [m]; such placements score 0 (design: 15 mm).
   double min_tip_distance = 0.015;
-
-  void Validate() const;
 };
 
 /// How far Algorithm 1 of the paper has come on a graph.

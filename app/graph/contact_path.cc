@@ -52,9 +52,7 @@ PathSearch::PathSearch(const ContactGraph& graph, int stages) : graph_(graph), s
   if (graph.stage() != GraphStage::kConnected) {
     throw InputError("", "paths", "a graph that has been pruned", "one that has not");
   }
-  if (stages < 1 || stages > 8) {
-    throw InputError("", "stages", "a whole number from 1 to 8", std::to_string(stages));
-  }
+  PREGRASP_CHECK(stages >= 1, stages);
   const auto sort = [&](std::vector<Choice>& choices, std::size_t stage) {
     std::sort(choices.begin(), choices.end(), [&](const Choice& a, const Choice& b) {
       if (a.value != b.value) return a.value > b.value;

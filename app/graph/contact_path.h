@@ -39,8 +39,8 @@ std::vector<ContactPath> FindSiblings(const ContactGraph& graph, const ContactPa
 /// which are found together, up to kMostTied, and come in the order of ContactPath::rule.
 class PathSearch {
  public:
-  /// @param stages  nodes in a path, 1 to 8. The graph is copied. @throws InputError unless it is
-  ///                connected and `stages` is in range.
+  /// @param stages  nodes in a path, at least 1. The graph is copied. @throws InputError unless it
+  ///                is connected.
   PathSearch(const ContactGraph& graph, int stages);
 
   /// The next best path; false when there is none left.

@@ -5,6 +5,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/finite.h"
 #include "app/core/text.h"
 
 namespace pregrasp {
@@ -46,10 +47,6 @@ bool AreNear(const Placement& a, const Placement& b, double spacing) {
 }  // namespace
 
 void PlacementSearchConfig::Validate() const {
-  if (points < 1 || pairs < 0) {
-    throw InputError("", "points", "at least one point and no negative number of pairs",
-                     std::to_string(std::min(points, pairs)));
-  }
   if (!(min_tip_distance >= 0.0 && max_tip_distance > min_tip_distance && spacing >= 0.0)) {
     throw InputError("", "max_tip_distance", "lengths, this one above min_tip_distance",
                      FormatDouble(max_tip_distance));
@@ -60,6 +57,7 @@ std::vector<Placement> FindPlacements(const TriangleMesh& mesh, const SignedDist
                                       const PlacementScorer& scorer, const Placement& fixed,
                                       int count, const PlacementSearchConfig& config, Rng rng) {
   config.Validate();
+  PREGRASP_CHECK(config.points >= 1 && config.pairs >= 0, config.points, config.pairs);
   std::array<std::vector<Placement::Contact>, kNumPlanningFingers> contacts;
   std::vector<Placement> candidates;
   const bool any_fixed = fixed.thumb().on || fixed.index().on;
@@ -93,6 +91,7 @@ std::vector<Placement> FindPlacements(const TriangleMesh& mesh, const SignedDist
 
   const std::vector<double> scores = scorer.Score(candidates);
   PREGRASP_CHECK(scores.size() == candidates.size(), scores.size(), candidates.size());
+  PREGRASP_CHECK(IsFinite(scores));
   std::vector<int> order(candidates.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return scores[a] > scores[b]; });

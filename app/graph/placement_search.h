@@ -14,6 +14,7 @@ struct PlacementSearchConfig {
   double max_tip_distance = 0.13;   ///< what a hand spans [m] (findings: 13 cm)
   double spacing = 0.01;  ///< placements of the same fingers differ by this much somewhere [m]
 
+  /// @throws InputError for lengths that do not go together.
   void Validate() const;
 };
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/core/error.h"
-#include "app/core/text.h"
+#include "app/core/check.h"
 
 namespace pregrasp {
 namespace {
@@ -59,21 +58,10 @@ bool HasForces(GraspStatus status) {
 
 }  // namespace
 
-void CompletionConfig::Validate() const {
-  grasp.Validate();
-  if (!(max_refinement >= 0.0 && max_refinement <= 0.1)) {
-    throw InputError("", "max_refinement", "a length from 0 to 0.1 m",
-                     FormatDouble(max_refinement));
-  }
-  if (max_refinements < 0 || max_solves < 0) {
-    throw InputError("", "max_refinements", "no negative count",
-                     std::to_string(std::min(max_refinements, max_solves)));
-  }
-}
-
 CompletedGrasp CompleteGrasp(const GraspWorld& world, const CompletionConfig& config,
                              const GraspPoints& generated, const std::vector<GraspContact>& fixed,
                              const std::vector<RigidTransform>& X_WB, const Rng& rng) {
+  PREGRASP_CHECK(config.max_refinement >= 0.0, config.max_refinement);
   CompletedGrasp grasp;
   grasp.projected = ProjectGrasp(world, generated, fixed);
   grasp.raw = TestGrasp(world, config.grasp, grasp.projected, X_WB, rng);

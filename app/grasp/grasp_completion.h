@@ -13,8 +13,6 @@ struct CompletionConfig {
   double max_refinement = 0.010;
   int max_refinements = 300;  ///< moved sets drawn for a sample that is not feasible as it is
   int max_solves = 16;        ///< of those, put to inverse kinematics: those whose forces hold
-
-  void Validate() const;
 };
 
 /// One generated grasp, tested.

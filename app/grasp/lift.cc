@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "app/core/check.h"
-#include "app/core/error.h"
-#include "app/core/text.h"
 
 namespace pregrasp {
 namespace {
@@ -96,19 +94,6 @@ class Lifter {
 
 }  // namespace
 
-void LiftConfig::Validate() const {
-  if (!(height > 0.0 && height <= 1.0)) {
-    throw InputError("", "height", "a length above 0 and at most 1 m", FormatDouble(height));
-  }
-  if (!(closing_seconds >= 0.0 && lift_seconds > 0.0 && hold_seconds >= 0.0)) {
-    throw InputError("", "lift_seconds", "times of at least 0 s", FormatDouble(lift_seconds));
-  }
-  if (!(friction_reserve > 0.0 && friction_reserve <= 1.0)) {
-    throw InputError("", "friction_reserve", "a share above 0 and at most 1",
-                     FormatDouble(friction_reserve));
-  }
-}
-
 Vector3 FindLiftDirection(const World& world, const WorldState& state, const PointCloud& cloud,
                           const EnvironmentDistance& environment, double height) {
   const std::vector<RigidTransform> X_WB = world.GetPoses(state);
@@ -129,7 +114,10 @@ Vector3 FindLiftDirection(const World& world, const WorldState& state, const Poi
 LiftResult SimulateLift(const World& world, const WorldState& state, const GraspWorld& grasp_world,
                         const GraspResult& grasp, const Vector3& direction_W,
                         const LiftConfig& config) {
-  config.Validate();
+  PREGRASP_CHECK(config.height > 0.0 && config.lift_seconds > 0.0, config.height,
+                 config.lift_seconds);
+  PREGRASP_CHECK(config.closing_seconds >= 0.0 && config.hold_seconds >= 0.0,
+                 config.closing_seconds, config.hold_seconds);
   PREGRASP_CHECK(grasp.feasible());
   const RigidTransform X_WO = state.bodies.front().X_WB();
   const MatrixX3 f_O = ChooseForces(grasp_world, grasp, X_WO.linear(), config.friction_reserve);

@@ -14,8 +14,6 @@ struct LiftConfig {
   double friction_reserve = 0.6;  ///< forces are chosen inside this share of the friction cone
   double max_shift = 0.01;        ///< the object may lag behind by this much [m]
   double max_turn_deg = 15.0;     ///< and turn by this much [degrees]
-
-  void Validate() const;
 };
 
 /// The design's "lift": closing the grasp and moving the object, with targets under the same spring

@@ -116,6 +116,8 @@ CertifyFacts MakeCertifyFacts(const JobState& state) {
   facts.max_force_N = certificate.full.max_force;
   facts.max_penetration_mm = 1e3 * certificate.full.max_penetration;
   facts.max_tip_overlap_mm = 1e3 * certificate.full.max_tip_overlap;
+  facts.unconverged_seconds = certificate.full.unconverged_seconds;
+  facts.unresolved_mm = 1e3 * certificate.full.unresolved;
   for (const GraspContact& contact : release.pressing) {
     facts.pressing.push_back({contact.finger, contact.p_OC, contact.nhat_O});
   }

@@ -1,10 +1,14 @@
 #include "app/job/planner.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "app/core/check.h"
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/core/text.h"
+#include "app/job/planner_settings.h"
 
 namespace pregrasp {
 namespace {
@@ -36,27 +40,31 @@ std::vector<Placement> FindProbes(const Shape& object, const ContactMeshConfig& 
                         config, Rng(seed, RngStream::kScoreProbes));
 }
 
+// What no setting alone shows: that the scene's fingers can give the force asked of them.
+void RequireForces(const PlannerConfig& config, const Scene& scene) {
+  const double f_max = scene.fingertips.max_force;
+  if (!(config.completion.grasp.f_min <= f_max)) {
+    throw InputError("", "grasps.f_min",
+                     fmt::format("at most fingertips.max_force, {} N", FormatDouble(f_max)),
+                     FormatDouble(config.completion.grasp.f_min));
+  }
+}
+
 }  // namespace
 
 void PlannerConfig::Validate() const {
-  if (cloud_points < 64 || cloud_points > 4096) {
-    throw InputError("", "cloud_points", "a whole number from 64 to 4096",
-                     std::to_string(cloud_points));
+  CheckPlannerSettings(*this);
+  constexpr int kMaxNumbers = 1'000'000;  // in the plans of one iteration: 8 MB
+  const int per_plan = stages * kNumPlanningFingers * (3 + 6 * mppi.timing.knots);
+  if (mppi.samples > kMaxNumbers / per_plan) {
+    throw InputError("", "mppi.samples",
+                     fmt::format("at most {} with paths.stages {} and mppi.knots {}",
+                                 kMaxNumbers / per_plan, stages, mppi.timing.knots),
+                     std::to_string(mppi.samples));
   }
-  if (stages < 1 || stages > 8) {
-    throw InputError("", "stages", "a whole number from 1 to 8", std::to_string(stages));
-  }
-  if (grasp_samples < 1 || grasp_samples > 1000) {
-    throw InputError("", "grasp_samples", "a whole number from 1 to 1000",
-                     std::to_string(grasp_samples));
-  }
-  mesh.Validate();
-  graph.Validate();
-  mppi.Validate();
   placements.Validate();
-  completion.Validate();
-  lift.Validate();
-  motion.Validate();
+  completion.grasp.Validate();
+  motion.ik.Validate();
 }
 
 double GraspSet::r_suc() const {
@@ -78,6 +86,7 @@ Planner::Planner(std::shared_ptr<const World> world, WorldState start, const Pla
       seed_(seed),
       pool_(pool) {
   config.Validate();
+  RequireForces(config, scene());
   half_world_ = std::make_shared<const World>(scene(), HalfStep(world_->config()));
   environment_ = std::make_shared<const EnvironmentDistance>(scene());
   shape_ = std::make_shared<const SignedDistance>(scene().object().shape);
@@ -100,6 +109,7 @@ Planner::~Planner() = default;
 
 Planner Planner::WithConfig(const PlannerConfig& config) const {
   config.Validate();
+  RequireForces(config, scene());
   if (config.cloud_points != config_.cloud_points) {
     throw InputError("", "points", std::to_string(config_.cloud_points) + ", as in the first graph",
                      std::to_string(config.cloud_points));

@@ -19,7 +19,7 @@ namespace pregrasp {
 
 /// The settings of all stages: the same defaults for every scene.
 struct PlannerConfig {
-  int cloud_points = 512;  ///< of the object cloud O, 64 to 4096
+  int cloud_points = 512;  ///< of the object cloud O
   ContactMeshConfig mesh;
   ContactGraphConfig graph;
   int stages = 2;  ///< N, nodes in a path
@@ -32,6 +32,8 @@ struct PlannerConfig {
   MotionTiming motion_timing;
   MotionConfig motion;
 
+  /// @throws InputError for a setting out of its range (planner_settings.h), or settings that do
+  /// not go together.
   void Validate() const;
 };
 

@@ -1,8 +1,9 @@
 #include "app/job/planner_settings.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <set>
 
 #include "app/core/error.h"
@@ -11,110 +12,62 @@
 namespace pregrasp {
 namespace {
 
-// The one list of fields and their names. Config is PlannerConfig or const PlannerConfig.
-template <typename Config, typename Visitor>
-void VisitFields(Config& config, Visitor&& visit) {
-  visit("cloud.points", config.cloud_points);
-  visit("mesh.triangles", config.mesh.triangles);
-  visit("mesh.convex_share", config.mesh.convex_share);
-  visit("graph.samples", config.graph.samples);
-  visit("graph.top_percent", config.graph.top_percent);
-  visit("graph.min_tip_distance", config.graph.min_tip_distance);
-  visit("paths.stages", config.stages);
-  visit("mppi.samples", config.mppi.samples);
-  visit("mppi.iterations", config.mppi.iterations);
-  visit("mppi.sigma", config.mppi.sigma);
-  visit("mppi.final_sigma", config.mppi.final_sigma);
-  visit("mppi.temperature", config.mppi.temperature);
-  visit("mppi.patience", config.mppi.patience);
-  visit("mppi.progress", config.mppi.progress);
-  visit("mppi.max_travel", config.mppi.max_travel);
-  visit("mppi.stage_seconds", config.mppi.timing.stage_seconds);
-  visit("mppi.knots", config.mppi.timing.knots);
-  visit("mppi.hold_seconds", config.mppi.timing.hold_seconds);
-  visit("mppi.no_contact", config.mppi.weights.no_contact);
-  visit("mppi.slip", config.mppi.weights.slip);
-  visit("mppi.effort", config.mppi.weights.effort);
-  visit("mppi.unrest", config.mppi.weights.unrest);
-  visit("mppi.speed", config.mppi.weights.speed);
-  visit("mppi.tip_overlap", config.mppi.weights.tip_overlap);
-  visit("mppi.tip_spacing", config.mppi.weights.tip_spacing);
-  visit("mppi.fall", config.mppi.weights.fall);
-  visit("certify.hold_seconds", config.certify.hold_seconds);
-  visit("certify.max_hold_shift", config.certify.max_hold_shift);
-  visit("certify.max_hold_turn_deg", config.certify.max_hold_turn_deg);
-  visit("grasps.samples", config.grasp_samples);
-  visit("grasps.points", config.placements.points);
-  visit("grasps.pairs", config.placements.pairs);
-  visit("grasps.spacing", config.placements.spacing);
-  visit("grasps.f_min", config.completion.grasp.f_min);
-  visit("grasps.may_drop", config.completion.grasp.may_drop);
-  visit("grasps.max_refinement", config.completion.max_refinement);
-  visit("grasps.max_refinements", config.completion.max_refinements);
-  visit("grasps.max_solves", config.completion.max_solves);
-  visit("grasps.starts", config.completion.grasp.kinematics.ik.max_starts);
-  visit("lift.height", config.lift.height);
-  visit("lift.closing_seconds", config.lift.closing_seconds);
-  visit("lift.lift_seconds", config.lift.lift_seconds);
-  visit("lift.hold_seconds", config.lift.hold_seconds);
-  visit("lift.friction_reserve", config.lift.friction_reserve);
-  visit("motion.order", config.motion.order);
-  visit("motion.fps", config.motion_timing.fps);
-  visit("motion.approach_seconds", config.motion_timing.approach_seconds);
-  visit("motion.closing_seconds", config.motion_timing.closing_seconds);
-  visit("motion.lift_seconds", config.motion_timing.lift_seconds);
-  visit("motion.lift_height", config.motion_timing.lift_height);
-  visit("motion.approach_distance", config.motion.approach_distance);
-  visit("motion.keyframe_starts", config.motion.keyframe_starts);
-  visit("motion.frame_starts", config.motion.frame_starts);
-  visit("motion.smoothing_sweeps", config.motion.smoothing_sweeps);
-}
-
-std::vector<std::string> FieldNames() {
-  std::vector<std::string> names;
-  PlannerConfig config;
-  VisitFields(config, [&](const char* name, const auto&) { names.emplace_back(name); });
-  return names;
-}
-
-std::string RootOf(const std::string& name) { return name.substr(0, name.find('.')); }
+constexpr KeyframeOrder kOrders[] = {KeyframeOrder::kReverse, KeyframeOrder::kForward};
 
 std::string Show(const FieldValue& value) {
-  if (const double* number = std::get_if<double>(&value)) return FormatDouble(*number);
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  return '"' + std::get<std::string>(value) + '"';
+  const bool text = std::holds_alternative<std::string>(value);
+  return text ? '"' + FieldText(value) + '"' : FieldText(value);
 }
 
-// One overload a type of field: takes the value, or throws.
-void Take(const std::string& name, const FieldValue& value, double& field) {
+std::string Join(const std::vector<std::string>& words, const std::string& quote,
+                 const std::string& separator) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : separator) + quote + word + quote;
+  }
+  return text;
+}
+
+// One overload a type of field: whether the value fits, and if so takes it.
+bool Take(const NumberRange& range, const FieldValue& value, double& field) {
   const double* number = std::get_if<double>(&value);
-  if (number == nullptr) throw InputError("", name, "a number", Show(value));
+  if (number == nullptr || !range.Contains(*number)) return false;
   field = *number;
+  return true;
 }
 
-void Take(const std::string& name, const FieldValue& value, int& field) {
-  const double* number = std::get_if<double>(&value);
-  if (number == nullptr || *number != std::floor(*number) || std::abs(*number) > 1e9) {
-    throw InputError("", name, "a whole number", Show(value));
-  }
-  field = static_cast<int>(*number);
+bool Take(const NumberRange& range, const FieldValue& value, int& field) {
+  double number = 0.0;
+  if (!Take(range, value, number)) return false;
+  field = static_cast<int>(number);
+  return true;
 }
 
-void Take(const std::string& name, const FieldValue& value, bool& field) {
+bool Take(const NumberRange& /*range*/, const FieldValue& value, bool& field) {
   const bool* flag = std::get_if<bool>(&value);
-  if (flag == nullptr) throw InputError("", name, "true or false", Show(value));
-  field = *flag;
+  if (flag != nullptr) field = *flag;
+  return flag != nullptr;
 }
 
-void Take(const std::string& name, const FieldValue& value, KeyframeOrder& field) {
+bool Take(const NumberRange& /*range*/, const FieldValue& value, KeyframeOrder& field) {
   const std::string* word = std::get_if<std::string>(&value);
-  for (const KeyframeOrder order : {KeyframeOrder::kReverse, KeyframeOrder::kForward}) {
-    if (word != nullptr && *word == KeyframeOrderName(order)) {
-      field = order;
-      return;
-    }
+  for (const KeyframeOrder order : kOrders) {
+    if (word == nullptr || *word != KeyframeOrderName(order)) continue;
+    field = order;
+    return true;
   }
-  throw InputError("", name, R"("reverse" or "forward")", Show(value));
+  return false;
+}
+
+FieldValue Value(double field) { return field; }
+FieldValue Value(int field) { return static_cast<double>(field); }
+FieldValue Value(bool field) { return field; }
+FieldValue Value(KeyframeOrder field) { return std::string(KeyframeOrderName(field)); }
+
+nlohmann::json ToJson(KeyframeOrder order) { return KeyframeOrderName(order); }
+template <typename T>
+nlohmann::json ToJson(const T& value) {
+  return value;
 }
 
 FieldValue ParseValue(const std::string& text) {
@@ -126,26 +79,82 @@ FieldValue ParseValue(const std::string& text) {
   return text;
 }
 
-nlohmann::json ToJson(KeyframeOrder order) { return KeyframeOrderName(order); }
-template <typename T>
-nlohmann::json ToJson(const T& value) {
-  return value;
+// Calls visit(field) with the setting's field in `config`, as it is typed there.
+template <typename Visitor>
+auto VisitField(const PlannerSetting& setting, PlannerConfig& config, const Visitor& visit) {
+  return std::visit([&](auto* field) { return visit(*field); }, setting.field(config));
 }
 
 }  // namespace
 
-void SetPlannerField(PlannerConfig& config, const std::string& name, const FieldValue& value) {
-  bool found = false;
-  VisitFields(config, [&](const char* field_name, auto& field) {
-    if (name != field_name) return;
-    found = true;
-    Take(name, value, field);
-  });
-  if (found) return;
-  const std::string nearest = FindNearest(name, FieldNames());
+bool SettingRule::Allows(double value) const {
+  return (!at_least || value >= *at_least) && (!at_most || value <= *at_most);
+}
+
+std::string SettingRule::Text() const {
+  std::string text;
+  if (at_least) text = "at least " + FormatDouble(*at_least);
+  if (at_most) text += (text.empty() ? "at most " : " and at most ") + FormatDouble(*at_most);
+  return text;
+}
+
+bool PlannerSetting::is_number() const { return std::holds_alternative<double>(Default()); }
+
+std::vector<std::string> PlannerSetting::choices() const {
+  std::vector<std::string> words;
+  if (!std::holds_alternative<std::string>(Default())) return words;
+  for (const KeyframeOrder order : kOrders) words.emplace_back(KeyframeOrderName(order));
+  return words;
+}
+
+std::string PlannerSetting::Values() const {
+  if (is_number()) return range.Text();
+  if (std::holds_alternative<bool>(Default())) return "true or false";
+  return Join(choices(), "", " or ");
+}
+
+std::string PlannerSetting::Expected() const {
+  if (is_number()) return range.Expected();
+  if (std::holds_alternative<bool>(Default())) return "true or false";
+  return Join(choices(), "\"", " or ");
+}
+
+FieldValue PlannerSetting::Get(const PlannerConfig& config) const {
+  PlannerConfig copy = config;
+  return VisitField(*this, copy, [](const auto& value) { return Value(value); });
+}
+
+nlohmann::json PlannerSetting::GetJson(const PlannerConfig& config) const {
+  PlannerConfig copy = config;
+  return VisitField(*this, copy, [](const auto& value) { return ToJson(value); });
+}
+
+void PlannerSetting::Set(PlannerConfig& config, const FieldValue& value) const {
+  const bool fits =
+      VisitField(*this, config, [&](auto& target) { return Take(range, value, target); });
+  if (!fits) throw InputError("", name, Expected(), Show(value));
+}
+
+std::string FieldText(const FieldValue& value) {
+  if (const double* number = std::get_if<double>(&value)) return FormatDouble(*number);
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  return std::get<std::string>(value);
+}
+
+const PlannerSetting& FindPlannerSetting(const std::string& name) {
+  std::vector<std::string> names;
+  for (const PlannerSetting& setting : SettingsTable()) {
+    if (setting.name == name) return setting;
+    names.push_back(setting.name);
+  }
+  const std::string nearest = FindNearest(name, names);
   throw InputError("", name,
                    nearest.empty() ? "the name of a planner's field" : '"' + nearest + '"',
                    "an unknown name");
+}
+
+void SetPlannerField(PlannerConfig& config, const std::string& name, const FieldValue& value) {
+  FindPlannerSetting(name).Set(config, value);
 }
 
 void ApplySettings(const nlohmann::json& settings, PlannerConfig& config) {
@@ -167,7 +176,8 @@ void ApplyPlannerSettings(PlannerConfig& config, std::vector<Setting>& settings)
   const std::vector<std::string> roots = PlannerRoots();
   std::vector<Setting> left;
   for (const Setting& setting : settings) {
-    if (std::find(roots.begin(), roots.end(), RootOf(setting.key)) == roots.end()) {
+    const std::string root = setting.key.substr(0, setting.key.find('.'));
+    if (std::find(roots.begin(), roots.end(), root) == roots.end()) {
       left.push_back(setting);
       continue;
     }
@@ -180,26 +190,51 @@ void ApplyPlannerSettings(PlannerConfig& config, std::vector<Setting>& settings)
   settings = left;
 }
 
+void CheckPlannerSettings(const PlannerConfig& config) {
+  PlannerConfig copy = config;
+  for (const PlannerSetting& setting : SettingsTable()) setting.Set(copy, setting.Get(config));
+}
+
 std::vector<std::string> PlannerRoots() {
   std::set<std::string> roots;
-  for (const std::string& name : FieldNames()) roots.insert(RootOf(name));
+  for (const PlannerSetting& setting : SettingsTable()) roots.insert(setting.root());
   return {roots.begin(), roots.end()};
 }
 
 nlohmann::json PlannerConfigJson(const PlannerConfig& config) {
   nlohmann::json all;
-  VisitFields(config, [&](const std::string& name, const auto& field) {
-    const std::size_t dot = name.find('.');
-    all[name.substr(0, dot)][name.substr(dot + 1)] = ToJson(field);
-  });
+  for (const PlannerSetting& setting : SettingsTable()) {
+    all[setting.root()][setting.key()] = setting.GetJson(config);
+  }
   return all;
 }
 
 nlohmann::json PlannerSettings(const PlannerConfig& config) {
   nlohmann::json all;
-  VisitFields(config,
-              [&](const std::string& name, const auto& field) { all[name] = ToJson(field); });
+  for (const PlannerSetting& setting : SettingsTable()) {
+    all[setting.name] = setting.GetJson(config);
+  }
   return all;
+}
+
+std::vector<std::string> RuleDepartures(const PlannerConfig& config) {
+  std::vector<std::string> departures;
+  for (const PlannerSetting& setting : SettingsTable()) {
+    const FieldValue value = setting.Get(config);
+    const double* number = std::get_if<double>(&value);
+    if (number == nullptr || setting.rule.Allows(*number)) continue;
+    const char* unit = setting.range.unit;
+    departures.push_back(fmt::format("{} {}{}{} is not {}: {}", setting.name, FieldText(value),
+                                     *unit == '\0' ? "" : " ", unit, setting.rule.Text(),
+                                     setting.rule.definition));
+  }
+  return departures;
+}
+
+std::vector<std::string> RuleDepartures(const Scene& scene, const PlannerConfig& config) {
+  std::vector<std::string> departures = RuleDepartures(scene);
+  for (std::string& departure : RuleDepartures(config)) departures.push_back(std::move(departure));
+  return departures;
 }
 
 }  // namespace pregrasp

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "app/core/error.h"
 #include "app/core/interrupt.h"
 
 namespace pregrasp {
@@ -151,12 +150,8 @@ class Runner {
 }  // namespace
 
 void RunConfig::Validate() const {
-  if (paths < 1 || paths > 1000) {
-    throw InputError("", "paths", "a whole number from 1 to 1000", std::to_string(paths));
-  }
-  if (motions < 1 || motions > 1000) {
-    throw InputError("", "motions", "a whole number from 1 to 1000", std::to_string(motions));
-  }
+  RequireWithin("", "paths", kPaths, paths);
+  RequireWithin("", "motions", {1, 1000, 1}, motions);
 }
 
 RunResult RunPlanner(Timeline& timeline, const RunConfig& config,

@@ -4,13 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "app/core/number_range.h"
 #include "app/job/run_summary.h"
 #include "app/job/timeline.h"
 
 namespace pregrasp {
 
 struct RunConfig {
-  int paths = 10;    ///< full optimisations at most, 1 to 1000 (design: the budget)
+  static constexpr NumberRange kPaths{1, 1000, 1};
+
+  int paths = 10;    ///< full optimisations at most, of kPaths (design: the budget)
   bool all = false;  ///< go on to the last path after the first success
   int motions = 4;   ///< lifting grasps of one path whose hand motion is tried
 

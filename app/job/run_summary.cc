@@ -232,7 +232,7 @@ RunSummary Summarize(const Timeline& timeline, const Node& node) {
   summary.scene = job.scene().name;
   summary.seed = job.setup().seed;
   summary.status = StatusAt(timeline, node);
-  summary.within_rules = RuleDepartures(job.scene()).empty();
+  summary.within_rules = RuleDepartures(job.scene(), state->config).empty();
   summary.physics.mu_tip = job.scene().fingertips.friction;
   summary.physics.max_force_N = job.scene().fingertips.max_force;
   summary.physics.dt = job.world().config().dt;

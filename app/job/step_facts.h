@@ -375,6 +375,8 @@ struct CertifyFacts {
   bool stays_when_released = false;
   double seconds = 0.0;
   double max_speed = 0.0, max_force_N = 0.0, max_penetration_mm = 0.0, max_tip_overlap_mm = 0.0;
+  double unconverged_seconds = 0.0;  ///< in steps that the contact solver left unfinished
+  double unresolved_mm = 0.0;        ///< the overlap that these leave, summed
   std::vector<PlaceFacts> pressing;
   std::vector<StageFacts> stages;
 
@@ -396,6 +398,8 @@ struct CertifyFacts {
     visit("max_force_N", self.max_force_N);
     visit("max_penetration_mm", self.max_penetration_mm);
     visit("max_tip_overlap_mm", self.max_tip_overlap_mm);
+    visit("unconverged_seconds", self.unconverged_seconds);
+    visit("unresolved_mm", self.unresolved_mm);
     visit("pressing", self.pressing);
     visit("stages", self.stages);
   }

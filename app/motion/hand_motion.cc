@@ -6,8 +6,7 @@
 #include <limits>
 
 #include "app/core/check.h"
-#include "app/core/error.h"
-#include "app/core/text.h"
+#include "app/core/finite.h"
 
 namespace pregrasp {
 namespace {
@@ -40,6 +39,8 @@ HandConfiguration Carry(const HandConfiguration& hand, const RigidTransform& X_W
 }
 
 void RecordResult(const IkResult& result, LooseningRung rung, MotionFrame* frame) {
+  PREGRASP_CHECK(AreFinite(result.X_WH, result.q, result.tip_error, result.clearance),
+                 result.tip_error, result.clearance);
   frame->configuration = result.configuration();
   frame->solved = true;
   frame->rung = rung;
@@ -74,21 +75,13 @@ const char* LooseningRungName(LooseningRung rung) {
   return "";
 }
 
-void MotionConfig::Validate() const {
-  if (!(approach_distance >= 0.0 && approach_distance <= 1.0)) {
-    throw InputError("", "approach_distance", "a length from 0 to 1 m",
-                     FormatDouble(approach_distance));
-  }
-  if (keyframe_starts < 1 || frame_starts < 1 || smoothing_sweeps < 0) {
-    throw InputError("", "motion", "at least one start and no negative number of sweeps", "less");
-  }
-  ik.Validate();
-}
-
 HandMotion::HandMotion(const IkSolver& solver, MotionTask task, const HandConfiguration& grasp,
                        const MotionConfig& config, std::uint64_t seed)
     : solver_(solver), task_(std::move(task)), grasp_(grasp), config_(config), seed_(seed) {
-  config.Validate();
+  config.ik.Validate();
+  PREGRASP_CHECK(config.approach_distance >= 0.0, config.approach_distance);
+  PREGRASP_CHECK(config.keyframe_starts >= 1 && config.frame_starts >= 1, config.keyframe_starts,
+                 config.frame_starts);
   PREGRASP_CHECK(task_.keyframes.size() >= 3, task_.keyframes.size());
   PREGRASP_CHECK(task_.keyframes.front() == 0);
   PREGRASP_CHECK(task_.keyframes.back() + 1 == static_cast<int>(task_.frames.size()));
@@ -229,12 +222,14 @@ MotionSummary HandMotion::Summarize(const MotionState& state) const {
   summary.min_clearance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < state.frames.size(); ++i) {
     const MotionFrame& frame = state.frames[i];
-    summary.failed += !frame.solved || frame.rung == LooseningRung::kFailed;
-    summary.loosened += frame.rung != LooseningRung::kNone && frame.rung != LooseningRung::kFailed;
+    const bool solved = frame.solved && frame.rung != LooseningRung::kFailed;
+    summary.failed += !solved;
+    summary.loosened += solved && frame.rung != LooseningRung::kNone;
     summary.max_tip_error = std::max(summary.max_tip_error, frame.tip_error);
     summary.min_clearance = std::min(summary.min_clearance, frame.clearance);
     if (i == 0) continue;
     const double dt = task_.frames[i].t - task_.frames[i - 1].t;
+    PREGRASP_CHECK(dt > 0.0, i, dt);
     const HandConfiguration& a = state.frames[i - 1].configuration;
     const HandConfiguration& b = frame.configuration;
     summary.max_joint_speed =
@@ -242,6 +237,9 @@ MotionSummary HandMotion::Summarize(const MotionState& state) const {
     summary.max_wrist_speed = std::max(summary.max_wrist_speed,
                                        (b.X_WH.translation() - a.X_WH.translation()).norm() / dt);
   }
+  PREGRASP_CHECK(AreFinite(summary.max_tip_error, summary.min_clearance, summary.max_joint_speed,
+                           summary.max_wrist_speed),
+                 summary.frames, summary.min_clearance, summary.max_joint_speed);
   return summary;
 }
 

@@ -35,8 +35,6 @@ struct MotionConfig {
   int frame_starts = 4;             ///< and at a frame in between
   int smoothing_sweeps = 6;         ///< each frame drawn to the mean of its neighbours
   IkConfig ik;
-
-  void Validate() const;
 };
 
 /// One finished frame.

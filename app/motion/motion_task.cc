@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/core/check.h"
+#include "app/core/finite.h"
 
 namespace pregrasp {
 namespace {
@@ -26,6 +27,8 @@ bool SameFingers(const std::array<Placement::Contact, kNumFingers>& a,
 }
 
 int FramesIn(double seconds, double fps) {
+  constexpr double kMaxFrames = 1e6;
+  PREGRASP_CHECK(seconds >= 0.0 && seconds * fps <= kMaxFrames, seconds, fps);
   return std::max(1, static_cast<int>(std::lround(seconds * fps)));
 }
 
@@ -52,6 +55,8 @@ MotionTask BuildMotionTask(const World& world, const std::vector<TraceRow>& trac
                            const MotionGrasp& grasp, const Vector3& lift_W,
                            const MotionTiming& timing) {
   PREGRASP_CHECK(!trace.empty());
+  PREGRASP_CHECK(timing.fps > 0.0, timing.fps);
+  PREGRASP_CHECK(AreFinite(lift_W, timing.lift_height), timing.lift_height);
   MotionTask task;
   const auto add = [&](MotionPhase phase, const std::vector<RigidTransform>& X_WB,
                        const std::array<Placement::Contact, kNumFingers>& contacts) {
@@ -102,6 +107,9 @@ MotionTask BuildMotionTask(const World& world, const std::vector<TraceRow>& trac
     X_WB[0].translation() += height * lift_W;
     add(MotionPhase::kLift, X_WB, grasp.contacts);
     if (i == lift) mark_key();
+  }
+  for (const MotionFrameTask& frame : task.frames) {
+    PREGRASP_CHECK(AreFinite(frame.t, frame.X_WB), frame.t);
   }
   return task;
 }

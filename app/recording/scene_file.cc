@@ -164,11 +164,9 @@ Json FingertipsToJson(const Scene& scene) {
   const FingertipConfig& tips = scene.fingertips;
   // The resolved damping of the spring law, for readers; LoadScene uses `damping`.
   const double b = tips.damping * std::sqrt(tips.stiffness * scene.object().mass_properties->mass);
-  return {{"friction", tips.friction},
-          {"max_force", tips.max_force},
-          {"stiffness", tips.stiffness},
-          {"damping", tips.damping},
-          {"damping_N_s_per_m", b}};
+  return {{"friction", tips.friction},   {"max_force", tips.max_force},
+          {"stiffness", tips.stiffness}, {"damping", tips.damping},
+          {"damping_N_s_per_m", b},      {"grasp_stiffness", tips.grasp_stiffness}};
 }
 
 }  // namespace
@@ -198,7 +196,8 @@ Scene LoadScene(const std::filesystem::path& file) {
   scene.gravity = reader["gravity"].Vec3();
   const JsonReader tips = reader["fingertips"];
   scene.fingertips = {tips["friction"].Number(), tips["max_force"].Number(),
-                      tips["stiffness"].Number(), tips["damping"].Number()};
+                      tips["stiffness"].Number(), tips["damping"].Number(),
+                      tips["grasp_stiffness"].Number()};
   if (const JsonReader camera = reader["camera"]; !camera.is_null()) {
     scene.camera = CameraConfig{camera["p_WCam"].Vec3(), camera["p_WTarget"].Vec3(),
                                 camera["fov_deg"].Number()};

@@ -8,65 +8,44 @@
 
 #include "app/core/error.h"
 #include "app/core/text.h"
+#include "app/scene/limits.h"
 
 namespace pregrasp {
 namespace {
 
-constexpr double kMaxSize = 100.0;       // [m]; a larger number is a unit error
-constexpr double kMaxDistance = 1000.0;  // [m], from the world's origin
-constexpr double kMaxMass = 1e6;         // [kg]
-
-void RequirePositive(const std::string& where, const std::string& field, double value) {
-  if (!(std::isfinite(value) && value > 0.0)) {
-    throw InputError(where, field, "a number above 0", FormatDouble(value));
-  }
-}
-
-void RequireLength(const std::string& where, const std::string& field, double value) {
-  if (!(std::isfinite(value) && value > 0.0 && value <= kMaxSize)) {
-    throw InputError(where, field, "a length above 0 and at most 100 m", FormatDouble(value));
-  }
-}
-
-void RequirePoint(const std::string& where, const std::string& field, const Vector3& p) {
-  for (int i = 0; i < 3; ++i) {
-    if (!(std::abs(p[i]) <= kMaxDistance)) {
-      throw InputError(where, field, "three numbers within 1000 m", FormatDouble(p[i]));
-    }
-  }
-}
-
-void RequireFriction(const std::string& where, const std::string& field, double friction) {
-  if (!(std::isfinite(friction) && friction >= 0.0 && friction <= 10.0)) {
-    throw InputError(where, field, "a coefficient from 0 to 10", FormatDouble(friction));
-  }
+// Each of the three within the range.
+void RequireEach(const std::string& where, const std::string& field, const NumberRange& range,
+                 const Vector3& v) {
+  for (int i = 0; i < 3; ++i) RequireWithin(where, field, range, v[i]);
 }
 
 struct ShapeValidator {
   const std::string& where;
   const std::string& field;
 
-  void operator()(const Box& box) const {
-    for (int i = 0; i < 3; ++i) RequireLength(where, field, box.size[i]);
-  }
+  void operator()(const Box& box) const { RequireEach(where, field, kLengthRange, box.size); }
   void operator()(const Cylinder& cylinder) const {
-    RequireLength(where, field + ".r", cylinder.radius);
-    RequireLength(where, field + ".h", cylinder.height);
+    RequireWithin(where, field + ".r", kLengthRange, cylinder.radius);
+    RequireWithin(where, field + ".h", kLengthRange, cylinder.height);
   }
   void operator()(const Capsule& capsule) const {
-    RequireLength(where, field + ".r", capsule.radius);
-    RequireLength(where, field + ".h", capsule.height);
+    RequireWithin(where, field + ".r", kLengthRange, capsule.radius);
+    RequireWithin(where, field + ".h", kLengthRange, capsule.height);
   }
-  void operator()(const Sphere& sphere) const { RequireLength(where, field + ".r", sphere.radius); }
-  void operator()(const Mesh& mesh) const { RequirePositive(where, field + ".scale", mesh.scale); }
+  void operator()(const Sphere& sphere) const {
+    RequireWithin(where, field + ".r", kLengthRange, sphere.radius);
+  }
+  void operator()(const Mesh& mesh) const {
+    RequireWithin(where, field + ".scale", kScaleRange, mesh.scale);
+  }
   void operator()(const Cloud& cloud) const {
-    RequirePositive(where, field + ".scale", cloud.scale);
+    RequireWithin(where, field + ".scale", kScaleRange, cloud.scale);
   }
   void operator()(const Union& whole) const {
     if (whole.parts.empty()) throw InputError(where, field, "at least one part", "an empty union");
     for (std::size_t i = 0; i < whole.parts.size(); ++i) {
       const std::string part = fmt::format("{}[{}]", field, i + 1);
-      RequirePoint(where, part + ".p", whole.parts[i].X_BP.translation());
+      RequireEach(where, part + ".p", kPositionRange, whole.parts[i].X_BP.translation());
       std::visit(ShapeValidator{where, part}, whole.parts[i].shape);
     }
   }
@@ -98,47 +77,38 @@ void ValidateInertia(const Body& body, const std::string& field) {
 
 void ValidateMass(const Body& body, const std::string& field) {
   const MassProperties& properties = *body.mass_properties;
-  if (!(properties.mass > 0.0 && properties.mass <= kMaxMass)) {
-    throw InputError(body.where, field + ".mass",
-                     properties.mass > 0.0 ? "a mass of at most 1e6 kg" : "a mass above 0 kg",
-                     FormatDouble(properties.mass));
-  }
-  RequirePoint(body.where, field + ".com", properties.p_BoBcm);
+  RequireWithin(body.where, field + ".mass", kMassRange, properties.mass);
+  RequireEach(body.where, field + ".com", kPositionRange, properties.p_BoBcm);
   ValidateInertia(body, field + ".inertia");
 }
 
 void ValidateBody(const Body& body, const std::string& field) {
   ValidateName(body.where, field + ".name", body.name);
-  RequirePoint(body.where, field + ".p", body.X_WB.translation());
+  RequireEach(body.where, field + ".p", kPositionRange, body.X_WB.translation());
   if (!body.X_WB.linear().allFinite()) {
     throw InputError(body.where, field + ".rpy_deg", "three finite numbers", "nan");
   }
   const std::string shape_field = field + ".shape";
   std::visit(ShapeValidator{body.where, shape_field}, body.shape);
-  RequireFriction(body.where, field + ".friction", body.friction);
+  RequireWithin(body.where, field + ".friction", kFrictionRange, body.friction);
   if (body.movable()) ValidateMass(body, field);
 }
 
 void ValidateFingertips(const std::string& where, const FingertipConfig& tips) {
-  RequireFriction(where, "fingertips.friction", tips.friction);
-  RequirePositive(where, "fingertips.max_force", tips.max_force);
-  RequirePositive(where, "fingertips.stiffness", tips.stiffness);
-  if (!(std::isfinite(tips.damping) && tips.damping >= 0.0)) {
-    throw InputError(where, "fingertips.damping", "a number of at least 0",
-                     FormatDouble(tips.damping));
-  }
+  RequireWithin(where, "fingertips.friction", kFrictionRange, tips.friction);
+  RequireWithin(where, "fingertips.max_force", kForceRange, tips.max_force);
+  RequireWithin(where, "fingertips.stiffness", kStiffnessRange, tips.stiffness);
+  RequireWithin(where, "fingertips.grasp_stiffness", kStiffnessRange, tips.grasp_stiffness);
+  RequireWithin(where, "fingertips.damping", kDampingRange, tips.damping);
 }
 
 void ValidateCamera(const std::string& where, const CameraConfig& camera) {
-  RequirePoint(where, "camera.p", camera.p_WCam);
-  RequirePoint(where, "camera.look_at", camera.p_WTarget);
+  RequireEach(where, "camera.p", kPositionRange, camera.p_WCam);
+  RequireEach(where, "camera.look_at", kPositionRange, camera.p_WTarget);
   if ((camera.p_WCam - camera.p_WTarget).norm() < 1e-6) {
     throw InputError(where, "camera.look_at", "a point other than camera.p", "the same");
   }
-  if (!(camera.fov_deg >= 1.0 && camera.fov_deg <= 150.0)) {
-    throw InputError(where, "camera.fov_deg", "an angle from 1 to 150 degrees",
-                     FormatDouble(camera.fov_deg));
-  }
+  RequireWithin(where, "camera.fov_deg", kFovRange, camera.fov_deg);
 }
 
 }  // namespace
@@ -154,7 +124,7 @@ void ValidateScene(const Scene& scene) {
   ValidateName(where, "name", scene.name);
   if (scene.bodies.empty()) throw InputError(where, "object", "an object", "none");
   if (!scene.object().movable()) {
-    throw InputError(scene.object().where, "object.mass", "a mass above 0 kg", "none");
+    throw InputError(scene.object().where, "object.mass", kMassRange.Expected(), "none");
   }
   if (scene.bodies.size() < 2) {
     throw InputError(where, "environment", "at least one body", "none");
@@ -169,32 +139,31 @@ void ValidateScene(const Scene& scene) {
                        '"' + body.name + '"');
     }
   }
-  for (int i = 0; i < 3; ++i) {
-    if (!(std::abs(scene.gravity[i]) <= 100.0)) {
-      throw InputError(where, "gravity", "three numbers within 100 m/s^2",
-                       FormatDouble(scene.gravity[i]));
-    }
-  }
+  RequireEach(where, "gravity", kGravityRange, scene.gravity);
   ValidateFingertips(where, scene.fingertips);
   if (scene.camera) ValidateCamera(where, *scene.camera);
 }
 
 std::vector<std::string> RuleDepartures(const Scene& scene) {
   std::vector<std::string> departures;
-  if (scene.fingertips.friction > 1.0) {
+  if (!(scene.fingertips.friction <= 1.0)) {
     departures.push_back(
         fmt::format("fingertips.friction {} is above 1.0", scene.fingertips.friction));
   }
-  if (scene.fingertips.max_force > 15.0) {
+  if (!(scene.fingertips.max_force <= 15.0)) {
     departures.push_back(
         fmt::format("fingertips.max_force {} N is above 15 N", scene.fingertips.max_force));
   }
-  if ((scene.gravity - Vector3(0.0, 0.0, -9.81)).norm() > 1e-12) {
+  if (!(scene.fingertips.grasp_stiffness >= 150.0 && scene.fingertips.grasp_stiffness <= 600.0)) {
+    departures.push_back(fmt::format("fingertips.grasp_stiffness {} N/m is outside 150 to 600 N/m",
+                                     scene.fingertips.grasp_stiffness));
+  }
+  if (!((scene.gravity - Vector3(0.0, 0.0, -9.81)).norm() <= 1e-12)) {
     departures.push_back(fmt::format("gravity is ({}, {}, {}) instead of (0, 0, -9.81) m/s^2",
                                      scene.gravity.x(), scene.gravity.y(), scene.gravity.z()));
   }
   for (const Body& body : scene.bodies) {
-    if (body.friction < 0.2 || body.friction > 0.6) {
+    if (!(body.friction >= 0.2 && body.friction <= 0.6)) {
       departures.push_back(
           fmt::format("friction {} of \"{}\" is outside 0.2 to 0.6", body.friction, body.name));
     }

@@ -37,10 +37,15 @@ struct Body {
 struct FingertipConfig {
   double friction = 0.8;    ///< coefficient between a fingertip and any body
   double max_force = 12.0;  ///< cap on |f| [N]
-  double stiffness = 50.0;  ///< k of f = -k (p - p_target) [N/m], the paper's value
+  double stiffness = 50.0;  ///< k of f = -k (p - p_target) while pushing [N/m], the paper's value
   /// Damping as a multiple of sqrt(k m): b = damping * sqrt(k * object mass) (findings: .7 is
   /// needed for light objects).
   double damping = 0.7;
+  /// k while a grasp closes and lifts [N/m], with the same damping ratio: a position-controlled
+  /// finger's. The Shadow Hand of MuJoCo Menagerie (shadow_hand/right_hand.xml) has position gains
+  /// of 1 N m/rad at knuckle and proximal joint; at the levers of 4 to 10 cm that a bent and a
+  /// straight finger have, that is 100 to 600 N/m at the tip.
+  double grasp_stiffness = 300.0;
 };
 
 /// A camera that a scene may fix; otherwise the picture is framed automatically.
@@ -73,8 +78,8 @@ struct Scene {
 void ValidateScene(const Scene& scene);
 
 /// Where a scene departs from the project's physical rules (fingertip friction above 1, environment
-/// friction outside 0.2 to 0.6, gravity other than 9.81, fingertip force above 15 N), one sentence
-/// each; empty means within the rules.
+/// friction outside 0.2 to 0.6, gravity other than 9.81, fingertip force above 15 N, a grasp's
+/// stiffness outside 150 to 600 N/m), one sentence each; empty means within the rules.
 std::vector<std::string> RuleDepartures(const Scene& scene);
 
 }  // namespace pregrasp

@@ -9,23 +9,25 @@
 
 #include "app/core/error.h"
 #include "app/core/text.h"
+#include "app/scene/limits.h"
 
 namespace pregrasp {
 namespace {
 
 constexpr const char* kWhere = "--set";
 
-double ParseNumber(const Setting& setting, std::string_view text) {
+double ParseNumber(const Setting& setting, std::string_view text, const NumberRange& range) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
-    throw InputError(kWhere, setting.key, "a number", '"' + std::string(text) + '"');
+    throw InputError(kWhere, setting.key, range.Expected(), '"' + std::string(text) + '"');
   }
+  RequireWithin(kWhere, setting.key, range, value);
   return value;
 }
 
 // "x,y,z", with or without the braces of a scene file.
-Vector3 ParseVector(const Setting& setting) {
+Vector3 ParseVector(const Setting& setting, const NumberRange& range) {
   std::string_view text = setting.value;
   if (text.size() >= 2 && text.front() == '{' && text.back() == '}') {
     text = text.substr(1, text.size() - 2);
@@ -36,7 +38,7 @@ Vector3 ParseVector(const Setting& setting) {
     if ((comma == std::string_view::npos) != (i == 2)) {
       throw InputError(kWhere, setting.key, "three numbers x,y,z", '"' + setting.value + '"');
     }
-    v[i] = ParseNumber(setting, text.substr(0, comma));
+    v[i] = ParseNumber(setting, text.substr(0, comma), range);
     text.remove_prefix(i == 2 ? text.size() : comma + 1);
   }
   return v;
@@ -45,12 +47,14 @@ Vector3 ParseVector(const Setting& setting) {
 using Setter = std::function<void(const Setting&)>;
 using Setters = std::map<std::string, Setter>;
 
-Setter SetNumber(double& target) {
-  return [&target](const Setting& setting) { target = ParseNumber(setting, setting.value); };
+Setter SetNumber(double& target, const NumberRange& range) {
+  return [&target, &range](const Setting& setting) {
+    target = ParseNumber(setting, setting.value, range);
+  };
 }
 
-Setter SetVector(Vector3& target) {
-  return [&target](const Setting& setting) { target = ParseVector(setting); };
+Setter SetVector(Vector3& target, const NumberRange& range) {
+  return [&target, &range](const Setting& setting) { target = ParseVector(setting, range); };
 }
 
 Setter SetText(std::string& target) {
@@ -59,15 +63,15 @@ Setter SetText(std::string& target) {
 
 void AddBody(Setters& setters, const std::string& prefix, Body& body) {
   setters[prefix + ".name"] = SetText(body.name);
-  setters[prefix + ".friction"] = SetNumber(body.friction);
+  setters[prefix + ".friction"] = SetNumber(body.friction, kFrictionRange);
   setters[prefix + ".p"] = [&body](const Setting& setting) {
-    body.X_WB.translation() = ParseVector(setting);
+    body.X_WB.translation() = ParseVector(setting, kPositionRange);
   };
   setters[prefix + ".rpy_deg"] = [&body](const Setting& setting) {
-    body.X_WB.linear() = RotationFromRpy(ParseVector(setting) * (kPi / 180.0));
+    body.X_WB.linear() = RotationFromRpy(ParseVector(setting, kAngleRange) * (kPi / 180.0));
   };
   setters[prefix + ".mass"] = [&body](const Setting& setting) {
-    const double mass = ParseNumber(setting, setting.value);
+    const double mass = ParseNumber(setting, setting.value, kMassRange);
     if (!body.mass_properties) body.mass_properties.emplace();
     MassProperties& properties = *body.mass_properties;
     // An inertia that the scene gave follows the mass: the same body, denser.
@@ -79,19 +83,21 @@ void AddBody(Setters& setters, const std::string& prefix, Body& body) {
 Setters SettersOf(Scene& scene) {
   Setters setters;
   setters["name"] = SetText(scene.name);
-  setters["gravity"] = SetVector(scene.gravity);
+  setters["gravity"] = SetVector(scene.gravity, kGravityRange);
   AddBody(setters, "object", scene.object());
   for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
     AddBody(setters, "environment." + scene.bodies[i].name, scene.bodies[i]);
   }
-  setters["fingertips.friction"] = SetNumber(scene.fingertips.friction);
-  setters["fingertips.max_force"] = SetNumber(scene.fingertips.max_force);
-  setters["fingertips.stiffness"] = SetNumber(scene.fingertips.stiffness);
-  setters["fingertips.damping"] = SetNumber(scene.fingertips.damping);
+  setters["fingertips.friction"] = SetNumber(scene.fingertips.friction, kFrictionRange);
+  setters["fingertips.max_force"] = SetNumber(scene.fingertips.max_force, kForceRange);
+  setters["fingertips.stiffness"] = SetNumber(scene.fingertips.stiffness, kStiffnessRange);
+  setters["fingertips.damping"] = SetNumber(scene.fingertips.damping, kDampingRange);
+  setters["fingertips.grasp_stiffness"] =
+      SetNumber(scene.fingertips.grasp_stiffness, kStiffnessRange);
   if (scene.camera) {
-    setters["camera.p"] = SetVector(scene.camera->p_WCam);
-    setters["camera.look_at"] = SetVector(scene.camera->p_WTarget);
-    setters["camera.fov_deg"] = SetNumber(scene.camera->fov_deg);
+    setters["camera.p"] = SetVector(scene.camera->p_WCam, kPositionRange);
+    setters["camera.look_at"] = SetVector(scene.camera->p_WTarget, kPositionRange);
+    setters["camera.fov_deg"] = SetNumber(scene.camera->fov_deg, kFovRange);
   }
   return setters;
 }

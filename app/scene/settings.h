@@ -19,8 +19,8 @@ Setting ParseSetting(const std::string& assignment);
 
 /// Applies those that name a part of the scene, and takes them out of the list: name;
 /// object.{name,mass,friction,p,rpy_deg}; environment.NAME.{the same}; fingertips.{friction,
-/// max_force,stiffness,damping}; gravity; camera.{p,look_at,fov_deg}. To be called before the
-/// scene's shapes are loaded, so that a new mass also means a new inertia.
+/// max_force,stiffness,damping,grasp_stiffness}; gravity; camera.{p,look_at,fov_deg}. To be called
+/// before the scene's shapes are loaded, so that a new mass also means a new inertia.
 /// @throws InputError for an unknown key, with the nearest legal one, or a value that does not fit.
 void ApplySceneSettings(Scene& scene, std::vector<Setting>& settings);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/core/check.h"
+#include "app/core/finite.h"
 
 namespace pregrasp {
 namespace {
@@ -13,20 +14,28 @@ void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* 
   *turn_deg = RadToDeg(RotationAngle(X_a.linear(), X_b.linear()));
 }
 
+// What stands in the way; each demand is written so that a NaN does not meet it.
 std::vector<CertifyReason> Judge(const PlanOutcome& outcome, const CertifyConfig& config) {
   if (outcome.diverged) return {CertifyReason::kDiverged};
-  std::vector<CertifyReason> reasons;
-  if (outcome.contact_seconds == 0.0) reasons.push_back(CertifyReason::kNeverTouches);
-  if (outcome.max_tip_overlap > kTipOverlapAllowed) reasons.push_back(CertifyReason::kTipOverlap);
-  if (!(outcome.unresolved <= config.max_unresolved)) {
-    reasons.push_back(CertifyReason::kNotConverged);
-  }
   double shift = 0.0, turn_deg = 0.0;
   CalcShift(outcome.hold_start, outcome.end, &shift, &turn_deg);
-  if (!(shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg)) {
-    reasons.push_back(CertifyReason::kDoesNotHold);
-  }
+  const bool touches = outcome.contact_seconds > 0.0;
+  const bool clear = outcome.max_tip_overlap <= kTipOverlapAllowed;
+  const bool holds = shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg;
+  const bool resolved = outcome.unresolved <= config.max_unresolved;
+  std::vector<CertifyReason> reasons;
+  if (!touches) reasons.push_back(CertifyReason::kNeverTouches);
+  if (!clear) reasons.push_back(CertifyReason::kTipOverlap);
+  if (!resolved) reasons.push_back(CertifyReason::kNotConverged);
+  if (!holds) reasons.push_back(CertifyReason::kDoesNotHold);
   return reasons;
+}
+
+// A hold that was simulated: a verdict about one that was not is our bug.
+void CheckHold(const PlanOutcome& outcome, double seconds, double dt) {
+  if (outcome.diverged) return;
+  const double held = outcome.end.t - outcome.hold_start.t;
+  PREGRASP_CHECK(std::abs(held - seconds) <= dt, held, seconds);
 }
 
 }  // namespace
@@ -59,8 +68,13 @@ Certificate CertifyPlan(const World& world, const World& half_world,
   result.full =
       SimulatePlan(world, environment, start, plan, timing, Stepper::kSimbody, &result.trace);
   result.half = SimulatePlan(half_world, environment, start, plan, timing, Stepper::kSimbody);
+  CheckHold(result.full, config.hold_seconds, world.config().dt);
+  CheckHold(result.half, config.hold_seconds, half_world.config().dt);
   CalcShift(result.full.hold_start, result.full.end, &result.hold_shift, &result.hold_turn_deg);
   CalcShift(result.full.end, result.half.end, &result.step_shift, &result.step_turn_deg);
+  PREGRASP_CHECK(
+      AreFinite(result.hold_shift, result.hold_turn_deg, result.step_shift, result.step_turn_deg),
+      result.hold_shift, result.hold_turn_deg, result.step_shift, result.step_turn_deg);
   result.reasons = Judge(result.full, config);
   const bool half_passes = Judge(result.half, config).empty();
   if (result.reasons.empty() != half_passes) {

@@ -6,6 +6,7 @@
 
 namespace pregrasp {
 
+/// What the object must keep in the hold; a NaN among them certifies nothing.
 struct CertifyConfig {
   double hold_seconds = 1.5;       ///< the last targets are kept this long (design, section 4)
   double max_hold_shift = 0.01;    ///< the object may move this far in the hold [m]

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/core/check.h"
+#include "app/core/finite.h"
 
 namespace pregrasp {
 namespace {
@@ -88,6 +89,7 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
   for (const double score : stage_scores) cost.total -= score;
   cost.total += cost.no_contact + cost.slip + cost.effort + cost.unrest + cost.speed +
                 cost.tip_overlap + cost.tip_spacing + cost.fall;
+  PREGRASP_CHECK(AreFinite(cost.total, cost.stage_scores, final_score), cost.total, final_score);
   return cost;
 }
 

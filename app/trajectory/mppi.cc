@@ -5,40 +5,19 @@
 #include <limits>
 
 #include "app/core/check.h"
-#include "app/core/error.h"
-#include "app/core/text.h"
+#include "app/core/finite.h"
 
 namespace pregrasp {
-namespace {
-
-void RequireRange(const char* field, double value, double low, double high) {
-  if (!(value >= low && value <= high)) {
-    throw InputError("", field, "a number from " + FormatDouble(low) + " to " + FormatDouble(high),
-                     FormatDouble(value));
-  }
-}
-
-}  // namespace
-
-void MppiConfig::Validate() const {
-  RequireRange("samples", samples, 4, 4096);
-  RequireRange("iterations", iterations, 1, 1000);
-  RequireRange("sigma", sigma, 1e-6, 100);
-  RequireRange("final_sigma", final_sigma, 1e-6, 100);
-  RequireRange("temperature", temperature, 1e-6, 1e6);
-  RequireRange("patience", patience, 1, 1000);
-  RequireRange("max_travel", max_travel, 0, 1);
-  RequireRange("stage_seconds", timing.stage_seconds, 0.01, 60);
-  RequireRange("knots", timing.knots, 1, 100);
-  RequireRange("hold_seconds", timing.hold_seconds, 0, 60);
-}
 
 Mppi::Mppi(const MppiProblem& problem, const MppiConfig& config)
     : problem_(problem),
       config_(config),
       range_(MakeActionRange(problem.world->scene(), config.max_travel)),
       space_(*problem.graph, problem.path.nodes, *problem.shape, range_, config.timing.knots) {
-  config.Validate();
+  PREGRASP_CHECK(config.samples >= 2 && config.iterations >= 1 && config.patience >= 1,
+                 config.samples, config.iterations, config.patience);
+  PREGRASP_CHECK(config.sigma > 0.0 && config.final_sigma > 0.0 && config.temperature > 0.0,
+                 config.sigma, config.final_sigma, config.temperature);
 }
 
 double Mppi::CalcSigma(int iteration) const {
@@ -106,6 +85,7 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
                                std::span(scores).subspan(first[i], first[i + 1] - first[i]),
                                final_scores[i], config_.weights, force_scale);
     sample.X_WO_end = outcomes[i].end.bodies.front().X_WB();
+    PREGRASP_CHECK(AreFinite(sample.cost.total, sample.X_WO_end), i, sample.cost.total);
     mean_cost += sample.cost.total / count;
     if (sample.cost.total < state.best_cost) {
       state.best_cost = sample.cost.total;
@@ -155,6 +135,7 @@ void Mppi::MoveMean(MppiState& state) const {
       state.mean[d] += sample.weight * sample.action[d];
     }
   }
+  PREGRASP_CHECK(IsFinite(state.mean), mean, variance, sum);
 }
 
 }  // namespace pregrasp

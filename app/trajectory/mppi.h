@@ -13,8 +13,8 @@ namespace pregrasp {
 /// Model-predictive path integral optimisation of one path (Williams et al., ICRA 2017), as a
 /// one-shot optimiser.
 struct MppiConfig {
-  int samples = 48;     ///< rollouts an iteration, 4 to 4096
-  int iterations = 15;  ///< at most, 1 to 1000
+  int samples = 48;     ///< rollouts an iteration, at least 2
+  int iterations = 15;  ///< at most
   double sigma = 1.2;   ///< standard deviation of the noise in the first iteration, so wide that
                         ///< squashing by tanh reaches the ends of each range
   double final_sigma = 0.3;  ///< and in the last; geometric in between
@@ -25,8 +25,6 @@ struct MppiConfig {
   double max_travel = 0.03;  ///< range of a target's own movement in a knot, each axis [m]
   PlanTiming timing;
   CostWeights weights;
-
-  void Validate() const;
 };
 
 /// One sampled plan of the last iteration.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/core/check.h"
+#include "app/core/finite.h"
 
 namespace pregrasp {
 namespace {
@@ -14,6 +15,16 @@ constexpr double kWorldRadius = 5.0;  // an object farther from its start than t
 
 RigidTransform ContactFrame(const RigidTransform& X_WO, const FingertipState& tip) {
   return X_WO * MakeTransform(FrameFromNormal(tip.nhat_O), tip.p_OC);
+}
+
+bool IsFiniteState(const WorldState& state) {
+  for (const BodyState& body : state.bodies) {
+    if (!AreFinite(body.p_WB, body.q_WB, body.v_WB, body.w_WB)) return false;
+  }
+  for (const FingertipState& tip : state.fingers) {
+    if (tip.on && !AreFinite(tip.p_OC, tip.nhat_O, tip.p_WTarget, tip.f_W)) return false;
+  }
+  return true;
 }
 
 // Steps the world along targets and keeps the books of a PlanOutcome.
@@ -27,8 +38,10 @@ class PlanRunner {
         stepper_(stepper),
         trace_(trace),
         state_(start),
-        start_(start) {
+        start_(start),
+        finite_(start) {
     if (trace_) trace_->push_back({state_, {}});
+    PREGRASP_CHECK(timing.knots >= 1, timing.knots);
     steps_per_knot_ = StepsIn(timing.stage_seconds / timing.knots);
     steps_in_hold_ = StepsIn(timing.hold_seconds);
   }
@@ -57,10 +70,12 @@ class PlanRunner {
 
   // Moves the targets of the fingers that are on in straight lines to `p_WTargets`.
   void RunKnot(const std::array<Vector3, kNumPlanningFingers>& p_WTargets) {
+    finite_ = state_;
     std::array<Vector3, kNumPlanningFingers> from;
     for (int j = 0; j < kNumPlanningFingers; ++j) {
       from[j] = state_.fingers[j].p_WTarget;
       if (state_.fingers[j].on) {
+        PREGRASP_CHECK(IsFinite(p_WTargets[j]), j, p_WTargets[j].transpose());
         outcome_.plan.stages.back()[j].p_WTargets.push_back(p_WTargets[j]);
       }
     }
@@ -76,16 +91,22 @@ class PlanRunner {
   }
 
   PlanOutcome Finish() {
-    outcome_.hold_start = state_;
+    outcome_.hold_start = finite_ = state_;
     for (int i = 0; i < steps_in_hold_ && !outcome_.diverged; ++i) Step();
     outcome_.end = state_;
     outcome_.seconds = state_.t - start_.t;
+    PREGRASP_CHECK(IsFiniteState(outcome_.end) && IsFiniteState(outcome_.hold_start));
+    PREGRASP_CHECK(AreFinite(outcome_.seconds, outcome_.contact_seconds, outcome_.effort,
+                             outcome_.max_force, outcome_.max_speed, outcome_.max_penetration,
+                             outcome_.max_tip_overlap, outcome_.min_tip_distance));
     return std::move(outcome_);
   }
 
  private:
   int StepsIn(double seconds) const {
-    return std::max(0, static_cast<int>(std::lround(seconds / world_.config().dt)));
+    constexpr double kMaxSeconds = 1000.0;  // a row of the trace for each step
+    PREGRASP_CHECK(seconds >= 0.0 && seconds <= kMaxSeconds, seconds);
+    return static_cast<int>(std::lround(seconds / world_.config().dt));
   }
 
   void Step() {
@@ -94,6 +115,11 @@ class PlanRunner {
       AddConvergence(world_.Step(state_, trace_ ? &contacts_ : nullptr));
     } else {
       AddConvergence(world_.StepWithSimbody(state_, &contacts_));
+    }
+    if (!IsFiniteState(state_)) {  // the outcome is the last that was finite
+      state_ = finite_;
+      outcome_.diverged = true;
+      return;
     }
     KeepBooks();
     if (trace_) trace_->push_back({state_, contacts_});
@@ -125,10 +151,7 @@ class PlanRunner {
     const int tip_check_every = stepper_ == Stepper::kSimbody ? 1 : kTipCheckEvery;
     if (state_.step % tip_check_every == 0) CheckTips(tip_check_every * dt);
     const Vector3 travelled = object.p_WB - start_.bodies.front().p_WB;
-    if (!object.p_WB.allFinite() || !object.q_WB.coeffs().allFinite() ||
-        travelled.norm() > kWorldRadius) {
-      outcome_.diverged = true;
-    }
+    if (!(travelled.norm() <= kWorldRadius)) outcome_.diverged = true;
   }
 
   void CheckTips(double seconds) {
@@ -141,6 +164,7 @@ class PlanRunner {
       const double radius = FingertipRadius(static_cast<Finger>(j));
       p_WTip[j] = X_WB[0] * Vector3(tip.p_OC + radius * tip.nhat_O);
       const double overlap = radius - environment_.Calc(p_WTip[j], X_WB).phi;
+      PREGRASP_CHECK(std::isfinite(overlap), j, overlap);  // std::max passes over a NaN
       outcome_.max_tip_overlap = std::max(outcome_.max_tip_overlap, overlap);
       overlaps |= overlap > kTipOverlapAllowed;
     }
@@ -158,6 +182,7 @@ class PlanRunner {
   std::vector<TraceRow>* trace_;
   WorldState state_;
   WorldState start_;
+  WorldState finite_;  // at the start of the knot, or of the hold
   std::vector<ContactPoint> contacts_;
   PlanOutcome outcome_;
   int steps_per_knot_ = 0, steps_in_hold_ = 0;
@@ -217,6 +242,7 @@ Released SimulateRelease(const World& world, WorldState state) {
   Released release;
   release.shift = (X_WO_end.translation() - X_WO.translation()).norm();
   release.turn_deg = RadToDeg(RotationAngle(X_WO.linear(), X_WO_end.linear()));
+  PREGRASP_CHECK(AreFinite(release.shift, release.turn_deg), release.shift, release.turn_deg);
   release.stays = release.shift < kMaxShift && release.turn_deg < kMaxTurnDeg;
   return release;
 }

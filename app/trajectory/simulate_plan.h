@@ -26,11 +26,12 @@ struct PlanOutcome {
                                      ///< surroundings [m]
   double tip_overlap_seconds = 0.0;  ///< time with more than kTipOverlapAllowed
   double min_tip_distance = 1e9;     ///< between the two fingertips while both are on [m]
-  bool diverged = false;             ///< a body left the scene or the state is not finite
-
   double unconverged_seconds = 0.0;  ///< in steps that the contact solver left unfinished
   double max_residual = 0.0;         ///< the fastest approach that such a step left [m/s]
   double unresolved = 0.0;           ///< the way of these approaches, summed over the steps [m]
+  /// The object left the scene, or the state was no longer finite: what is kept is then the last
+  /// state known to be finite.
+  bool diverged = false;
 };
 
 /// Honesty rule 4: a fingertip sphere may overlap the environment by at most this [m].

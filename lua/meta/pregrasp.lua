@@ -24,7 +24,7 @@ function pregrasp.open(scene, options) end
 
 ---@class OpenOptions
 ---@field seed? integer the script's --seed by default
----@field threads? integer cannot change a result; 0 is one per processor
+---@field threads? integer cannot change a result; 0 is one per processor, at most 256
 ---@field set? table<string, number|string|Vector3> changes values: { ["object.mass"] = 0.2 }
 
 -- Scenes. In a scene file these functions are globals. ---------------------------------------------
@@ -90,8 +90,9 @@ function pregrasp.union(parts) end
 ---@class FingertipsTable
 ---@field friction? number 0.8, between a fingertip and any body
 ---@field max_force? number 12 N
----@field stiffness? number 50 N/m
+---@field stiffness? number 50 N/m, while pushing
 ---@field damping? number 0.7, a multiple of sqrt(stiffness * object's mass)
+---@field grasp_stiffness? number 300 N/m, while a grasp closes and lifts
 
 ---@class CameraTable
 ---@field p Vector3 where it stands [m]
@@ -273,12 +274,12 @@ function Session:mesh(options) end
 function Session:graph(options) end
 
 ---@class GraphOptions
----@field points? integer of the object's cloud, 512; the same for all graphs of a session
----@field triangles? integer of the contact mesh, 40
----@field convex_share? number from which share of its hull's volume on a shape is meshed by its hull
----@field samples? integer placements a node for each of thumb, index and both, 5
----@field top_percent? number nodes kept by each score, 5
----@field min_tip_distance? number two tips closer than this score 0 [m], 0.015
+---@field points? integer of the object's cloud; the same for all graphs of a session, 64 to 4096; 512
+---@field triangles? integer of the contact mesh, 12 to 200, even; 40
+---@field convex_share? number from which share of its hull's volume on a shape is meshed by its hull, 0.01 to 1; 0.97
+---@field samples? integer placements a node for each of thumb, index and both, 1 to 100; 5
+---@field top_percent? number percent of the nodes that each score keeps, 0.01 to 100; 5
+---@field min_tip_distance? number two tips closer than this score 0, 0 to 0.2 m; 0.015
 
 -- The planner, stage by stage. Each object is a stepper: what it was before each step is kept, and back()
 -- goes there exactly. A step has an id, which is on its picture, in the log and here. Numbers of nodes
@@ -304,7 +305,7 @@ function Graph:score() end
 function Graph:prune(options) end
 
 ---@class PruneOptions
----@field top_percent? number instead of the graph's
+---@field top_percent? number percent of the nodes that each score keeps, 0.01 to 100; 5
 
 ---One of three steps: the best by s_c stay, the best by s_n stay, edges are built.
 ---@param nodes? integer at most so many nodes of it: prune_step(1) is a node at a time
@@ -342,7 +343,7 @@ function Graph:neighbors(id) end
 function Graph:paths(options) end
 
 ---@class PathsOptions
----@field stages? integer contact states in a path, 2
+---@field stages? integer contact states in a path, 1 to 8; 2
 
 ---Takes steps back.
 ---@param steps? integer 1
@@ -410,25 +411,25 @@ local Path = {}
 function Path:optimize(options) end
 
 ---@class OptimizeOptions
----@field samples? integer rollouts an iteration, 48
----@field iterations? integer at most, 15
----@field sigma? number standard deviation of the noise in the first iteration, 1.2
----@field final_sigma? number and in the last, 0.3
----@field temperature? number lambda over the standard deviation of the costs, 0.3
----@field patience? integer iterations without progress after which it has ended, 7
----@field progress? number what counts as progress, 0.01
----@field max_travel? number of a target in a knot, each axis [m], 0.03
----@field stage_seconds? number of one contact stage, 0.8
----@field knots? integer force targets a stage, 4; a fork keeps it
----@field hold_seconds? number the last targets are held before the last score, 1
----@field no_contact? number weight: no finger ever touches, 0.5
----@field slip? number weight: share of the contact time at the cone's limit, 0.25
----@field effort? number weight: mean force over the largest one allowed, 0.1
----@field unrest? number weight: speed when the hold ends, 0.3
----@field speed? number weight: peak speed above 0.35 m/s, 0.8
----@field tip_overlap? number weight: a fingertip in the surroundings, half at once, half by the share of the time, 1
----@field tip_spacing? number weight: tips nearer than 15 mm, 0.5
----@field fall? number weight: the object fell out of the scene, 1.5
+---@field samples? integer rollouts an iteration, 4 to 4096; 48
+---@field iterations? integer iterations at most, 1 to 1000; 15
+---@field sigma? number standard deviation of the noise in the first iteration, 1e-06 to 100; 1.2
+---@field final_sigma? number of the noise in the last iteration, 1e-06 to 100; 0.3
+---@field temperature? number lambda over the standard deviation of the costs, 1e-06 to 1e+06; 0.3
+---@field patience? integer iterations without progress after which it ends, 1 to 1000; 7
+---@field progress? number what counts as progress: the best cost falls by this, 0 to 100; 0.01
+---@field max_travel? number of a target in a knot, each axis, 0 to 1 m; 0.03
+---@field stage_seconds? number of one contact stage, 0.05 to 10 s; 0.8
+---@field knots? integer force targets a stage; a fork keeps it, 1 to 100; 4
+---@field hold_seconds? number the last targets are held before the last score, 0 to 30 s; 1
+---@field no_contact? number weight: no finger ever touches, 0 to 1000; 0.5
+---@field slip? number weight: share of the contact time at the cone's limit, 0 to 1000; 0.25
+---@field effort? number weight: mean force over the largest one allowed, 0 to 1000; 0.1
+---@field unrest? number weight: speed when the hold ends, 0 to 1000; 0.3
+---@field speed? number weight: peak speed above 0.35 m/s, 0 to 1000; 0.8
+---@field tip_overlap? number weight: a fingertip in the surroundings, half at once, half by the share of the time, 0 to 1000; 1
+---@field tip_spacing? number weight: tips nearer than 15 mm, 0 to 1000; 0.5
+---@field fall? number weight: the object fell out of the scene, 0 to 1000; 1.5
 
 ---A picture of the path on the contact mesh.
 ---@param options? ShotOptions
@@ -474,9 +475,10 @@ function Optimizer:rollouts() end
 function Optimizer:certify(options) end
 
 ---@class CertifyOptions
----@field hold_seconds? number the last targets are kept this long, 1.5
----@field max_hold_shift? number the object may move this far in the hold [m], 0.01
----@field max_hold_turn_deg? number and turn this far, 5
+---@field hold_seconds? number the last targets are kept this long, 0 to 30 s, within the rules at least 1.5; 1.5
+---@field max_hold_shift? number the object may move this far in the hold, 0 to 1 m, within the rules at most 0.01; 0.01
+---@field max_hold_turn_deg? number the object may turn this far in the hold, 0 to 180 deg, within the rules at most 5; 5
+---@field max_unresolved? number overlap that the contact solver may leave unfinished, over all steps, 0 to 1 m, within the rules at most 0.001; 0.001
 
 ---A picture of the last iteration: where its best plans leave the object.
 ---@param options? ShotOptions
@@ -530,16 +532,19 @@ local Trajectory = {}
 function Trajectory:grasps(options) end
 
 ---@class GraspsOptions
----@field samples? integer 20
----@field points? integer places a finger that are scored, for what the generator is to complete, 400
----@field pairs? integer placements of both fingers that are scored, 4000
----@field spacing? number by which the placements of two samples differ somewhere [m], 0.01
----@field f_min? number smallest normal force of every finger [N], 0.5
----@field may_drop? boolean ring and little may be left out, true
----@field max_refinement? number how far a contact may be moved [m], 0.01
----@field max_refinements? integer moved sets drawn for a sample, 300
----@field max_solves? integer of those, put to inverse kinematics, 16
----@field starts? integer restarts of inverse kinematics, 20
+---@field samples? integer latent samples of the generator, 1 to 500, within the rules at most 20; 20
+---@field points? integer places a finger that are scored, for what the generator is to complete, 1 to 10000; 400
+---@field pairs? integer placements of both fingers that are scored, 0 to 50000; 4000
+---@field spacing? number by which the placements of two samples differ somewhere, 0 to 1 m; 0.01
+---@field f_min? number smallest normal force of every finger, 0 to 100 N, within the rules at least 0.5; 0.5
+---@field may_drop? boolean ring and little may be left out; true
+---@field max_refinement? number how far a contact may be moved, 0 to 0.1 m, within the rules at most 0.01; 0.01
+---@field max_refinements? integer moved sets drawn for a sample, 0 to 10000; 300
+---@field max_solves? integer of those, put to inverse kinematics, 0 to 1000; 16
+---@field starts? integer restarts of inverse kinematics, 1 to 1000; 20
+---@field tip_tolerance? number a fingertip may miss its contact by this, 0.0001 to 0.01 m, within the rules at most 0.0005; 0.002
+---@field max_cone_deg? number between a distal axis and the inward normal, 1 to 180 deg, within the rules at most 60; 60
+---@field contact_depth? number a contacting distal link may enter the object by this, 0 to 0.01 m, within the rules at most 0.001; 0.001
 
 ---A body at its end.
 ---@param name string
@@ -607,16 +612,19 @@ local Grasp = {}
 function Grasp:motion(options) end
 
 ---@class MotionOptions
----@field order? "reverse"|"forward" of keyframes, "reverse": the last first
----@field fps? number 30
----@field approach_seconds? number 1.2
----@field closing_seconds? number 1
----@field lift_seconds? number 1.2
----@field lift_height? number [m], 0.1
----@field approach_distance? number how far off the palm starts [m], 0.2
----@field keyframe_starts? integer restarts of inverse kinematics at a keyframe, 25
----@field frame_starts? integer and in between, 4
----@field smoothing_sweeps? integer 6
+---@field order? "reverse"|"forward" of keyframes: reverse solves the last first; reverse
+---@field fps? number frames a second, 1 to 120 Hz, within the rules at least 30; 30
+---@field approach_seconds? number from the start to the first contact, 0 to 10 s; 1.2
+---@field closing_seconds? number in which the fingers close, 0 to 10 s; 1
+---@field lift_seconds? number in which the hand rises, 0 to 10 s; 1.2
+---@field lift_height? number by which the hand rises, 0 to 1 m, within the rules at least 0.1; 0.1
+---@field approach_distance? number how far off the palm starts, 0 to 1 m, within the rules at least 0.2; 0.2
+---@field keyframe_starts? integer restarts of inverse kinematics at a keyframe, 1 to 1000; 25
+---@field frame_starts? integer restarts of inverse kinematics in between, 1 to 1000; 4
+---@field smoothing_sweeps? integer each frame drawn to the mean of its neighbours, 0 to 100; 6
+---@field tip_tolerance? number a fingertip may miss its contact by this before a frame counts as loosened, 0.0001 to 0.01 m, within the rules at most 0.0005; 0.002
+---@field max_cone_deg? number between a distal axis and the inward normal, likewise, 1 to 180 deg, within the rules at most 60; 60
+---@field contact_depth? number a contacting distal link may enter the object by this, likewise, 0 to 0.01 m, within the rules at most 0.001; 0.001
 
 ---A picture of the hand in it.
 ---@param options? ShotOptions
@@ -824,7 +832,7 @@ function pregrasp.wrench(options) end
 ---@field min_normal number smallest normal part of the forces [N]
 ---@field forces Vector3[] on the object [N]: of least effort, or, if not feasible, those on which the proof ended
 ---@field status string "feasible", or the condition that fails
----@field residual number net wrench that these leave [N, torques over torque_scale]: rounding if feasible, else what lacks
+---@field residual number net wrench that these leave [N, torques over torque_scale]: rounding if feasible
 
 ---A hand pose whose fingertips touch the contacts, within cones of 60 degrees, without overlap with
 ---the scene's bodies at the start, the object and the hand itself; certified by FCL.

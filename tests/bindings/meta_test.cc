@@ -1,4 +1,5 @@
 // lua/meta/pregrasp.lua against what is registered: the same names, both ways.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "bindings/planner_options.h"
 #include "bindings/script.h"
 
 namespace pregrasp {
@@ -71,6 +73,30 @@ TEST(MetaTest, AnnotationsNameExactlyWhatIsRegistered) {
   }
   for (const std::string& name : meta) {
     EXPECT_TRUE(registered.count(name)) << name << " of lua/meta/pregrasp.lua is not registered";
+  }
+}
+
+// The fields of a class as the manual has them.
+std::vector<std::string> FieldLinesInMeta(const std::string& name) {
+  std::ifstream in(std::filesystem::path(PREGRASP_SOURCE_DIR) / "lua/meta/pregrasp.lua");
+  std::vector<std::string> lines;
+  bool inside = false;
+  for (std::string line; std::getline(in, line);) {
+    if (inside && line.rfind("---@field", 0) != 0) break;
+    if (inside) lines.push_back(line);
+    inside = inside || line == "---@class " + name;
+  }
+  return lines;
+}
+
+TEST(MetaTest, OptionsOfThePlannersStagesSayWhatTheTableOfSettingsSays) {
+  const std::vector<const Schema*> schemas = StageOptionSchemas();
+  EXPECT_GE(schemas.size(), 7U);
+  for (const Schema* schema : schemas) {
+    const std::vector<std::string> lines = OptionAnnotations(*schema);
+    EXPECT_EQ(lines.size(), schema->keys.size());
+    EXPECT_EQ(FieldLinesInMeta(schema->name), lines)
+        << fmt::format("---@class {}\n{}\n", schema->name, fmt::join(lines, "\n"));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -64,6 +65,31 @@ TEST_F(RunCommandTest, WithoutSuccessTheRunIsCompleteAndSaysWhy) {
   EXPECT_EQ(run.manifest["configuration"]["mppi"]["iterations"], 2);
 }
 
+TEST_F(RunCommandTest, ALooserSettingIsWarnedOfAndTakesTheRunOutOfTheRules) {
+  const std::vector<std::string> strict = {"--set", "grasps.tip_tolerance=0.0005", "--set",
+                                           "motion.tip_tolerance=0.0005"};
+  const fs::path out = folder_ / "out" / "ruler";
+  RunProgram(Quick(strict), folder_);
+  EXPECT_EQ(LoadRun(out).summary.within_rules, true);
+  std::vector<std::string> loose = strict;
+  loose.insert(loose.end(), {"--set", "certify.hold_seconds=0.5"});
+  const ProgramResult result = RunProgram(Quick(loose), folder_);
+  EXPECT_NE(result.err.find("warning: certify.hold_seconds 0.5 s is not at least 1.5"),
+            std::string::npos)
+      << result.err;
+  EXPECT_EQ(LoadRun(out).summary.within_rules, false);
+}
+
+TEST(InfoCommandTest, SettingsAreListedWithDefaultRangeUnitAndRule) {
+  const TestFolder folder;
+  const ProgramResult result = RunProgram({"info", "--settings"}, folder.path());
+  EXPECT_EQ(result.code, 0);
+  const std::regex line(
+      R"((^|\n)certify\.hold_seconds +1\.5 +0 to 30 s +[^\n]*within the rules at least 1\.5\n)");
+  EXPECT_TRUE(std::regex_search(result.out, line)) << result.out;
+  EXPECT_NE(result.out.find("motion.order"), std::string::npos);
+}
+
 TEST_F(RunCommandTest, ASeedGivesTheSameBytesWithAnyNumberOfThreadsAndAFinishedRunIsReplaced) {
   const fs::path out = folder_ / "out" / "ruler";
   RunProgram(Quick({"--threads", "1"}), folder_);
@@ -79,9 +105,33 @@ TEST_F(RunCommandTest, ASeedGivesTheSameBytesWithAnyNumberOfThreadsAndAFinishedR
 TEST_F(RunCommandTest, BadInputIsOneLineAndLeavesNothing) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {Arguments({"--seed", "-3"}), "--seed"},
-      {Arguments({"--paths", "0"}), "paths"},
+      {Arguments({"--seed", "nan"}), "--seed"},
+      {Arguments({"--seed", "99999999999999999999"}), "--seed"},
+      {Arguments({"--paths", "0"}), "--paths: expected a whole number from 1 to 1000, got \"0\""},
+      {Arguments({"--paths", "1001"}), "--paths: expected a whole number from 1 to 1000"},
+      {Arguments({"--threads", "-1"}),
+       "--threads: expected a whole number from 0 to 256, got \"-1\""},
+      {Arguments({"--threads", "257"}), "--threads: expected a whole number from 0 to 256"},
+      {Arguments({"--threads", "2.5"}), "--threads: expected a whole number from 0 to 256"},
+      {Arguments({"--threads", "inf"}), "--threads: expected a whole number from 0 to 256"},
       {Arguments({"--set", "mppi.sampels=3"}), "mppi.samples"},
-      {Arguments({"--set", "mppi.samples=2"}), "samples"},
+      {Arguments({"--set", "mppi.samples=2"}),
+       "--set: mppi.samples: expected a whole number from 4 to 4096, got 2"},
+      {Arguments({"--set", "certify.hold_seconds=nan"}),
+       "--set: certify.hold_seconds: expected a number from 0 to 30 s, got nan"},
+      {Arguments({"--set", "certify.hold_seconds=-1"}), "--set: certify.hold_seconds: "},
+      {Arguments({"--set", "lift.closing_seconds=1e300"}), "--set: lift.closing_seconds: "},
+      {Arguments({"--set", "motion.lift_height=nan"}), "--set: motion.lift_height: "},
+      {Arguments({"--set", "motion.fps=0"}), "--set: motion.fps: "},
+      {Arguments({"--set", "mppi.progress=inf"}), "--set: mppi.progress: "},
+      {Arguments({"--set", "grasps.samples=0"}),
+       "--set: grasps.samples: expected a whole number from 1 to 500, got 0"},
+      {Arguments({"--set", "grasps.f_min=13"}),
+       "grasps.f_min: expected at most fingertips.max_force, 12 N, got 13"},
+      {Arguments({"--set", "fingertips.friction=nan"}),
+       "--set: fingertips.friction: expected a number from 0 to 10, got nan"},
+      {Arguments({"--set", "environment.table.friction=inf"}),
+       "--set: environment.table.friction: "},
       {Arguments({"--set", "object.mass=-1"}), "object.mass"},
       {Arguments({"--pictures", "some"}), "--pictures"},
       {{"run", "nothing.lua"}, "nothing.lua"},

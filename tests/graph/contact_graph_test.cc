@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -176,13 +177,15 @@ TEST(ContactGraphTest, AnotherPercentageCountsUntilPruningBegins) {
   graph.Prune();
   EXPECT_EQ(graph.Why(0).num_kept_each, static_cast<int>(graph.nodes().size()) / 2);
   EXPECT_THROW(graph.SetTopPercent(5.0), InputError);
-  EXPECT_THROW(MakeScored(10.0).SetTopPercent(0.0), InputError);
+  EXPECT_THROW(MakeScored(10.0).SetTopPercent(0.0), InternalError);
 }
 
-TEST(ContactGraphTest, BadConfigurationsAndIdsAreBadInput) {
-  ContactGraphConfig config;
-  config.top_percent = 0.0;
-  EXPECT_THROW(ContactGraph(MakeBoxMesh(kBoxSize), config), InputError);
+TEST(ContactGraphTest, AConfigurationThatNoSettingGivesIsOurBugAndAnUnknownIdBadInput) {
+  for (const double top_percent : {0.0, 101.0, std::numeric_limits<double>::quiet_NaN()}) {
+    ContactGraphConfig config;
+    config.top_percent = top_percent;
+    EXPECT_THROW(ContactGraph(MakeBoxMesh(kBoxSize), config), InternalError) << top_percent;
+  }
   ContactGraph graph(MakeBoxMesh(kBoxSize), {});
   EXPECT_THROW(graph.Prune(), InputError);
   EXPECT_THROW(graph.Why(144), InputError);

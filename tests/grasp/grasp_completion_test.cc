@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "app/core/error.h"
 #include "app/grasp/grasp_search.h"
 #include "tests/grasp/grasp_scenes.h"
@@ -72,10 +74,15 @@ TEST_F(GraspCompletionTest, FixedContactsStayWhereTheyAre) {
   }
 }
 
-TEST_F(GraspCompletionTest, ABadConfigurationIsBadInput) {
-  CompletionConfig config;
-  config.max_refinement = -1.0;
-  EXPECT_THROW(config.Validate(), InputError);
+TEST_F(GraspCompletionTest, ARefinementOfNoLengthIsOurBug) {
+  ASSERT_FALSE(found_.empty());
+  for (const double length : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    CompletionConfig config;
+    config.max_refinement = length;
+    EXPECT_THROW(CompleteGrasp(world_, config, Disturb(found_[0], 0.006, Rng(3)), {},
+                               world_.StartPoses(), Rng(3, RngStream::kGrasp)),
+                 InternalError);
+  }
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ inline Scene SampleScene(std::uint64_t seed = 1) {
   Scene scene;
   scene.name = "sample";
   scene.gravity = {0.1, -0.0, -9.81};
-  scene.fingertips = {0.7, 11.5, 52.5, 1.0 / 3.0};
+  scene.fingertips = {0.7, 11.5, 52.5, 1.0 / 3.0, 310.5};
   scene.camera = CameraConfig{RandomVector(rng), RandomVector(rng), 31.7};
   const auto add = [&](const std::string& name, Shape shape, bool movable) {
     Body body;

@@ -75,6 +75,7 @@ void ExpectSame(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.fingertips.max_force, b.fingertips.max_force);
   EXPECT_EQ(a.fingertips.stiffness, b.fingertips.stiffness);
   EXPECT_EQ(a.fingertips.damping, b.fingertips.damping);
+  EXPECT_EQ(a.fingertips.grasp_stiffness, b.fingertips.grasp_stiffness);
   ASSERT_EQ(a.camera.has_value(), b.camera.has_value());
   if (a.camera) {
     ExpectSameBits(a.camera->p_WCam, b.camera->p_WCam);

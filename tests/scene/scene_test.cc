@@ -62,11 +62,24 @@ TEST(ValidateSceneTest, NamesTheLineAndFieldThatIsWrong) {
       {[](Scene& s) { s.gravity.z() = kNan; }, "scene.lua:1: gravity: "},
       {[](Scene& s) { s.fingertips.max_force = 0; }, "scene.lua:1: fingertips.max_force: "},
       {[](Scene& s) { s.fingertips.damping = -1; }, "scene.lua:1: fingertips.damping: "},
+      {[](Scene& s) { s.fingertips.grasp_stiffness = 0; },
+       "scene.lua:1: fingertips.grasp_stiffness: "},
       {[](Scene& s) { s.camera = CameraConfig{}; }, "scene.lua:1: camera.look_at: "},
   };
   for (const auto& [change, start] : cases) {
     const std::string line = FailureAfter(change);
     EXPECT_EQ(line.find(start), 0U) << start << " against " << line;
+  }
+}
+
+TEST(ValidateSceneTest, NoFingertipIsMadeOfWhatIsNoNumber) {
+  for (double FingertipConfig::*field :
+       {&FingertipConfig::friction, &FingertipConfig::max_force, &FingertipConfig::stiffness,
+        &FingertipConfig::grasp_stiffness, &FingertipConfig::damping}) {
+    for (const double value : {kNan, kInf, -kInf, -1.0, 1e300}) {
+      const std::string line = FailureAfter([&](Scene& s) { s.fingertips.*field = value; });
+      EXPECT_EQ(line.find("scene.lua:1: fingertips."), 0U) << value << " gives " << line;
+    }
   }
 }
 
@@ -85,6 +98,13 @@ TEST(ValidateSceneTest, AnInertiaMustBeThatOfARigidBody) {
   EXPECT_NE(with(1, 1, 1, 1.5), "");  // not positive
 }
 
+TEST(RuleDeparturesTest, WhatIsNoNumberIsNotWithinTheRules) {
+  Scene scene = MakeScene();
+  scene.fingertips.friction = scene.fingertips.max_force = scene.gravity.z() = kNan;
+  scene.fingertips.grasp_stiffness = scene.object().friction = kNan;
+  EXPECT_EQ(RuleDepartures(scene).size(), 5U);
+}
+
 TEST(RuleDeparturesTest, AreNamedOneByOne) {
   Scene scene = MakeScene();
   EXPECT_TRUE(RuleDepartures(scene).empty());
@@ -92,7 +112,21 @@ TEST(RuleDeparturesTest, AreNamedOneByOne) {
   scene.fingertips.max_force = 20;
   scene.gravity.z() = -1.62;
   scene.bodies[1].friction = 0.9;
-  EXPECT_EQ(RuleDepartures(scene).size(), 4U);
+  scene.fingertips.grasp_stiffness = 1500;
+  EXPECT_EQ(RuleDepartures(scene).size(), 5U);
+}
+
+TEST(RuleDeparturesTest, AGraspIsAsStiffAsAFinger150To600NewtonsAMetre) {
+  for (const double k : {150.0, 300.0, 600.0}) {
+    Scene scene = MakeScene();
+    scene.fingertips.grasp_stiffness = k;
+    EXPECT_TRUE(RuleDepartures(scene).empty()) << k;
+  }
+  for (const double k : {149.0, 601.0}) {
+    Scene scene = MakeScene();
+    scene.fingertips.grasp_stiffness = k;
+    EXPECT_EQ(RuleDepartures(scene).size(), 1U) << k;
+  }
 }
 
 }  // namespace

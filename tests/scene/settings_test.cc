@@ -40,11 +40,13 @@ std::string Failure(const std::string& assignment) {
 TEST(SettingsTest, ChangeTheSceneByKey) {
   Scene scene = MakeObjectOnTable();
   Set(scene, "fingertips.friction=0.05");
+  Set(scene, "fingertips.grasp_stiffness=450");
   Set(scene, "environment.table.friction=0.25");
   Set(scene, "environment.table.p=0,0,-0.05");
   Set(scene, "object.rpy_deg={0,0,90}");
   Set(scene, "gravity=0,0,-1.62");
   EXPECT_EQ(scene.fingertips.friction, 0.05);
+  EXPECT_EQ(scene.fingertips.grasp_stiffness, 450.0);
   EXPECT_EQ(scene.bodies[1].friction, 0.25);
   EXPECT_EQ(scene.bodies[1].X_WB.translation(), Vector3(0, 0, -0.05));
   EXPECT_NEAR(scene.object().X_WB.linear()(1, 0), 1.0, 1e-15);
@@ -64,13 +66,47 @@ TEST(SettingsTest, WhatIsWrongIsSaidWithTheNearestKey) {
   EXPECT_EQ(
       Failure("object.mas=1"),
       "--set: expected a key that can be set, got \"object.mas\" (did you mean \"object.mass\"?)");
-  EXPECT_EQ(Failure("object.mass=heavy"), "--set: object.mass: expected a number, got \"heavy\"");
-  EXPECT_EQ(Failure("object.mass=1kg"), "--set: object.mass: expected a number, got \"1kg\"");
+  EXPECT_EQ(Failure("object.mass=heavy"),
+            "--set: object.mass: expected a number from 1e-06 to 1e+06 kg, got \"heavy\"");
+  EXPECT_EQ(Failure("object.mass=1kg"),
+            "--set: object.mass: expected a number from 1e-06 to 1e+06 kg, got \"1kg\"");
   EXPECT_EQ(Failure("gravity=0,0"), "--set: gravity: expected three numbers x,y,z, got \"0,0\"");
   EXPECT_EQ(Failure("gravity=0,0,1,2"),
             "--set: gravity: expected three numbers x,y,z, got \"0,0,1,2\"");
   for (const char* assignment : {"", "=", "object.mass", "object.mass=", "=1"}) {
     EXPECT_NE(Failure(assignment).find("expected key=value"), std::string::npos) << assignment;
+  }
+}
+
+// Every number that --set reaches, with one that is just beyond each end of what it may be.
+TEST(SettingsTest, WhatIsNotFiniteOrOutOfRangeIsRefusedByTheKeyThatWasTyped) {
+  const struct {
+    const char* key;
+    const char* low;
+    const char* high;
+    bool vector;
+  } numbers[] = {
+      {"object.mass", "0", "2e6", false},
+      {"object.friction", "-0.01", "10.1", false},
+      {"environment.table.mass", "-3", "1e300", false},
+      {"environment.table.friction", "-1", "11", false},
+      {"fingertips.friction", "-0.1", "10.5", false},
+      {"fingertips.max_force", "0", "1001", false},
+      {"fingertips.stiffness", "0", "1e6", false},
+      {"fingertips.grasp_stiffness", "-300", "1e9", false},
+      {"fingertips.damping", "-0.1", "101", false},
+      {"object.p", "-1001", "1e4", true},
+      {"object.rpy_deg", "-1e5", "1e300", true},
+      {"environment.table.p", "-1e18", "2000", true},
+      {"gravity", "-101", "1e3", true},
+  };
+  for (const auto& [key, low, high, vector] : numbers) {
+    for (const std::string value : {"nan", "-nan", "inf", "-inf", low, high}) {
+      const std::string text = vector ? "0," + value + ",0" : value;
+      const std::string line = Failure(std::string(key) + "=" + text);
+      EXPECT_EQ(line.find("--set: " + std::string(key) + ": expected a number from "), 0U)
+          << key << "=" << text << " gives " << line;
+    }
   }
 }
 

@@ -3,12 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
+#include "app/core/error.h"
+#include "app/core/finite.h"
 #include "app/geometry/mass_properties.h"
 #include "tests/trajectory/ruler_fixture.h"
 
 namespace pregrasp {
 namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // One finger presses the top of the ruler and its target travels along +x.
 WorldPlan MakeDrag(double depth, double travel) {
@@ -25,12 +30,12 @@ WorldPlan MakeDrag(double depth, double travel) {
 
 class CertifyTest : public ::testing::Test {
  protected:
-  Certificate Certify(const WorldPlan& plan) {
+  Certificate Certify(const WorldPlan& plan, const CertifyConfig& config = {}) {
     StepConfig half;
     half.dt = ruler_.world.config().dt / 2;
     const World half_world(ruler_.scene, half);
     return CertifyPlan(ruler_.world, half_world, ruler_.environment, ruler_.world.InitialState(),
-                       plan, PlanTiming(), CertifyConfig());
+                       plan, PlanTiming(), config);
   }
   RulerProblem ruler_;
 };
@@ -43,6 +48,47 @@ TEST_F(CertifyTest, ADragThatEndsAtRestIsCertifiedAtBothSteps) {
   EXPECT_EQ(result.hold_seconds, 1.5);
   // Every step of 0.8 s and of the 1.5 s hold, and the start.
   EXPECT_EQ(result.trace.size(), static_cast<std::size_t>(std::lround(2.3 * 240)) + 1);
+}
+
+TEST_F(CertifyTest, ALimitThatIsNoNumberCertifiesNothing) {
+  for (double CertifyConfig::*limit :
+       {&CertifyConfig::max_hold_shift, &CertifyConfig::max_hold_turn_deg}) {
+    CertifyConfig config;
+    config.hold_seconds = 0.1;
+    config.*limit = kNan;
+    const Certificate result = Certify(MakeDrag(0.01, 0.06), config);
+    EXPECT_FALSE(result.certified);
+    EXPECT_EQ(result.reasons.front(), CertifyReason::kDoesNotHold);
+  }
+}
+
+TEST_F(CertifyTest, AHoldThatCannotBeSimulatedIsOurBug) {
+  for (const double seconds : {kNan, -1.0, 1e300, std::numeric_limits<double>::infinity()}) {
+    CertifyConfig config;
+    config.hold_seconds = seconds;
+    EXPECT_THROW(Certify(MakeDrag(0.01, 0.06), config), InternalError) << seconds;
+  }
+}
+
+TEST_F(CertifyTest, ATargetThatIsNoNumberIsOurBug) {
+  WorldPlan plan = MakeDrag(0.01, 0.06);
+  plan.stages[0][1].p_WTargets[2].x() = kNan;
+  EXPECT_THROW(Certify(plan), InternalError);
+}
+
+TEST_F(CertifyTest, AStateThatOverflowsDivergesAndLeavesFactsThatAreNumbers) {
+  RelativePlan plan;
+  plan.stages.resize(1);
+  FingerStage& index = plan.stages[0][1];
+  index.on = true;
+  index.contact = {true, Vector3(0.0, 0.0, 0.0015), Vector3::UnitZ()};
+  index.knots.resize(4);
+  index.knots[1].travel_W = Vector3(1e200, 0.0, 0.0);  // its square is no number
+  const PlanOutcome outcome = SimulatePlan(ruler_.world, ruler_.environment,
+                                           ruler_.world.InitialState(), plan, PlanTiming());
+  EXPECT_TRUE(outcome.diverged);
+  EXPECT_TRUE(AreFinite(outcome.effort, outcome.max_force, outcome.max_speed, outcome.seconds,
+                        outcome.end.bodies[0].p_WB, outcome.end.fingers[1].f_W));
 }
 
 TEST_F(CertifyTest, APlanWithoutContactIsNotCertified) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "app/core/error.h"
 #include "tests/trajectory/ruler_fixture.h"
 
@@ -141,11 +143,25 @@ TEST(MppiTest, APlanWithoutContactIsTheWorstKindOfRest) {
   EXPECT_NEAR(cost.total, CostWeights().no_contact, 1e-3);
 }
 
-TEST(MppiTest, BadConfigurationsAreBadInput) {
+TEST(MppiTest, AConfigurationThatNoSettingGivesIsOurBug) {
+  const RulerProblem ruler;
+  MppiConfig few, nowhere;
+  few.samples = 1;
+  nowhere.temperature = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(Mppi(ruler.Make(0, 1), few), InternalError);
+  EXPECT_THROW(Mppi(ruler.Make(0, 1), nowhere), InternalError);
+}
+
+TEST(MppiTest, ACostThatIsNoNumberIsOurBugAndNeverTheBestPlan) {
   const RulerProblem ruler;
   MppiConfig config;
-  config.samples = 1;
-  EXPECT_THROW(Mppi(ruler.Make(0, 1), config), InputError);
+  config.samples = 4;
+  config.weights.no_contact = config.weights.effort = std::numeric_limits<double>::quiet_NaN();
+  const Mppi mppi(ruler.Make(0, 1), config);
+  MppiState state = mppi.Start();
+  ThreadPool pool(1);
+  EXPECT_THROW(mppi.Step(state, pool), InternalError);
+  EXPECT_TRUE(state.best_action.empty());
 }
 
 }  // namespace

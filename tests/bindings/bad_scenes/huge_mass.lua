@@ -1,4 +1,4 @@
--- expect: huge_mass.lua:4: object.mass: expected a mass of at most 1e6 kg, got 1e+30
+-- expect: huge_mass.lua:4: object.mass: expected a number from 1e-06 to 1e+06 kg, got 1e+30
 return scene {
   name = "bad",
   object = { shape = box{0.1, 0.1, 0.1}, mass = 1e30 },

@@ -1,4 +1,4 @@
--- expect: huge_position.lua:4: object.p: expected three numbers within 1000 m, got 1e+18
+-- expect: huge_position.lua:4: object.p: expected a number from -1000 to 1000 m, got 1e+18
 return scene {
   name = "bad",
   object = { shape = box{0.1, 0.1, 0.1}, mass = 0.2, p = {0, 0, 1e18} },

@@ -1,4 +1,4 @@
--- expect: huge_size.lua:4: object.shape: expected a length above 0 and at most 100 m, got 1e+300
+-- expect: huge_size.lua:4: object.shape: expected a number from 1e-06 to 100 m, got 1e+300
 return scene {
   name = "bad",
   object = { shape = box{1e300, 0.1, 0.1}, mass = 0.2 },

@@ -1,4 +1,4 @@
--- expect: negative_friction.lua:4: object.friction: expected a coefficient from 0 to 10, got -0.1
+-- expect: negative_friction.lua:4: object.friction: expected a number from 0 to 10, got -0.1
 return scene {
   name = "bad",
   object = { shape = sphere{0.05}, mass = 0.2, friction = -0.1, p = {0, 0, 0.05} },

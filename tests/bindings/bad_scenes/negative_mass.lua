@@ -1,4 +1,4 @@
--- expect: negative_mass.lua:4: object.mass: expected a mass above 0 kg, got -1
+-- expect: negative_mass.lua:4: object.mass: expected a number from 1e-06 to 1e+06 kg, got -1
 return scene {
   name = "bad",
   object = { shape = box{0.1, 0.1, 0.1}, mass = -1, p = {0, 0, 0.05} },

@@ -1,4 +1,4 @@
--- expect: negative_size.lua:4: object.shape.r: expected a length above 0 and at most 100 m, got -0.02
+-- expect: negative_size.lua:4: object.shape.r: expected a number from 1e-06 to 100 m, got -0.02
 return scene {
   name = "bad",
   object = { shape = cylinder{-0.02, 0.1}, mass = 0.2 },

@@ -1,0 +1,321 @@
+// The one table of a planner's settings: name, range with unit, meaning, field, and the rule of
+// those that decide what counts as a success. High ends keep what a run needs in memory and time
+// finite: the largest values together give a certified trajectory of 2 minutes (a row for each
+// physics step), 20,000 frames, and 8 MB for an iteration of MPPI (PlannerConfig::Validate).
+#include "app/job/planner_settings.h"
+
+namespace pregrasp {
+namespace {
+
+using Field = PlannerSetting::Field;
+using Settings = std::vector<PlannerSetting>;
+
+NumberRange Whole(double low, double high) { return {low, high, 1}; }
+NumberRange Real(double low, double high, const char* unit = "") { return {low, high, 0, unit}; }
+
+SettingRule AtLeast(double value, const char* definition) { return {value, {}, definition}; }
+SettingRule AtMost(double value, const char* definition) { return {{}, value, definition}; }
+
+// The value of a row that is neither bounded nor free: flags and choices.
+constexpr NumberRange kNoNumber;
+
+#define FIELD(member) [](PlannerConfig& config) -> Field { return &config.member; }
+
+Settings GraphSettings() {
+  return {
+      {"cloud.points",
+       Whole(64, 4096),
+       "of the object's cloud; the same for all graphs of a session",
+       FIELD(cloud_points),
+       {}},
+      {"mesh.triangles", {12, 200, 2}, "of the contact mesh", FIELD(mesh.triangles), {}},
+      {"mesh.convex_share",
+       Real(0.01, 1.0),
+       "from which share of its hull's volume on a shape is meshed by its hull",
+       FIELD(mesh.convex_share),
+       {}},
+      {"graph.samples",
+       Whole(1, 100),
+       "placements a node for each of thumb, index and both",
+       FIELD(graph.samples),
+       {}},
+      {"graph.top_percent",
+       Real(0.01, 100.0),
+       "percent of the nodes that each score keeps",
+       FIELD(graph.top_percent),
+       {}},
+      {"graph.min_tip_distance",
+       Real(0.0, 0.2, "m"),
+       "two tips closer than this score 0",
+       FIELD(graph.min_tip_distance),
+       {}},
+      {"paths.stages", Whole(1, 8), "contact states in a path", FIELD(stages), {}},
+  };
+}
+
+Settings MppiSettings() {
+  return {
+      {"mppi.samples", Whole(4, 4096), "rollouts an iteration", FIELD(mppi.samples), {}},
+      {"mppi.iterations", Whole(1, 1000), "iterations at most", FIELD(mppi.iterations), {}},
+      {"mppi.sigma",
+       Real(1e-6, 100.0),
+       "standard deviation of the noise in the first iteration",
+       FIELD(mppi.sigma),
+       {}},
+      {"mppi.final_sigma",
+       Real(1e-6, 100.0),
+       "of the noise in the last iteration",
+       FIELD(mppi.final_sigma),
+       {}},
+      {"mppi.temperature",
+       Real(1e-6, 1e6),
+       "lambda over the standard deviation of the costs",
+       FIELD(mppi.temperature),
+       {}},
+      {"mppi.patience",
+       Whole(1, 1000),
+       "iterations without progress after which it ends",
+       FIELD(mppi.patience),
+       {}},
+      {"mppi.progress",
+       Real(0.0, 100.0),
+       "what counts as progress: the best cost falls by this",
+       FIELD(mppi.progress),
+       {}},
+      {"mppi.max_travel",
+       Real(0.0, 1.0, "m"),
+       "of a target in a knot, each axis",
+       FIELD(mppi.max_travel),
+       {}},
+      {"mppi.stage_seconds",
+       Real(0.05, 10.0, "s"),
+       "of one contact stage",
+       FIELD(mppi.timing.stage_seconds),
+       {}},
+      {"mppi.knots",
+       Whole(1, 100),
+       "force targets a stage; a fork keeps it",
+       FIELD(mppi.timing.knots),
+       {}},
+      {"mppi.hold_seconds",
+       Real(0.0, 30.0, "s"),
+       "the last targets are held before the last score",
+       FIELD(mppi.timing.hold_seconds),
+       {}},
+      {"mppi.no_contact",
+       Real(0.0, 1000.0),
+       "weight: no finger ever touches",
+       FIELD(mppi.weights.no_contact),
+       {}},
+      {"mppi.slip",
+       Real(0.0, 1000.0),
+       "weight: share of the contact time at the cone's limit",
+       FIELD(mppi.weights.slip),
+       {}},
+      {"mppi.effort",
+       Real(0.0, 1000.0),
+       "weight: mean force over the largest one allowed",
+       FIELD(mppi.weights.effort),
+       {}},
+      {"mppi.unrest",
+       Real(0.0, 1000.0),
+       "weight: speed when the hold ends",
+       FIELD(mppi.weights.unrest),
+       {}},
+      {"mppi.speed",
+       Real(0.0, 1000.0),
+       "weight: peak speed above 0.35 m/s",
+       FIELD(mppi.weights.speed),
+       {}},
+      {"mppi.tip_overlap",
+       Real(0.0, 1000.0),
+       "weight: a fingertip in the surroundings, half at once, half by the share of the time",
+       FIELD(mppi.weights.tip_overlap),
+       {}},
+      {"mppi.tip_spacing",
+       Real(0.0, 1000.0),
+       "weight: tips nearer than 15 mm",
+       FIELD(mppi.weights.tip_spacing),
+       {}},
+      {"mppi.fall",
+       Real(0.0, 1000.0),
+       "weight: the object fell out of the scene",
+       FIELD(mppi.weights.fall),
+       {}},
+  };
+}
+
+Settings CertifySettings() {
+  const char* holds = "a final pose that holds stays within 0.01 m and 5 deg for 1.5 s";
+  return {
+      {"certify.hold_seconds", Real(0.0, 30.0, "s"), "the last targets are kept this long",
+       FIELD(certify.hold_seconds), AtLeast(1.5, holds)},
+      {"certify.max_hold_shift", Real(0.0, 1.0, "m"), "the object may move this far in the hold",
+       FIELD(certify.max_hold_shift), AtMost(0.01, holds)},
+      {"certify.max_hold_turn_deg", Real(0.0, 180.0, "deg"),
+       "the object may turn this far in the hold", FIELD(certify.max_hold_turn_deg),
+       AtMost(5.0, holds)},
+      {"certify.max_unresolved", Real(0.0, 1.0, "m"),
+       "overlap that the contact solver may leave unfinished, over all steps",
+       FIELD(certify.max_unresolved), AtMost(0.001, "a certified simulation has converged")},
+  };
+}
+
+Settings GraspsSettings() {
+  const char* reached = "a contact is reached within 0.0005 m, 60 deg and 0.001 m of overlap";
+  return {
+      {"grasps.samples", Whole(1, 500), "latent samples of the generator", FIELD(grasp_samples),
+       AtMost(20, "r_suc and success are of 20 samples")},
+      {"grasps.points",
+       Whole(1, 10000),
+       "places a finger that are scored, for what the generator is to complete",
+       FIELD(placements.points),
+       {}},
+      {"grasps.pairs",
+       Whole(0, 50000),
+       "placements of both fingers that are scored",
+       FIELD(placements.pairs),
+       {}},
+      {"grasps.spacing",
+       Real(0.0, 1.0, "m"),
+       "by which the placements of two samples differ somewhere",
+       FIELD(placements.spacing),
+       {}},
+      {"grasps.f_min", Real(0.0, 100.0, "N"), "smallest normal force of every finger",
+       FIELD(completion.grasp.f_min), AtLeast(0.5, "every finger of a feasible grasp presses")},
+      {"grasps.may_drop",
+       kNoNumber,
+       "ring and little may be left out",
+       FIELD(completion.grasp.may_drop),
+       {}},
+      {"grasps.max_refinement", Real(0.0, 0.1, "m"), "how far a contact may be moved",
+       FIELD(completion.max_refinement), AtMost(0.010, "r_suc is after 10 mm of refinement")},
+      {"grasps.max_refinements",
+       Whole(0, 10000),
+       "moved sets drawn for a sample",
+       FIELD(completion.max_refinements),
+       {}},
+      {"grasps.max_solves",
+       Whole(0, 1000),
+       "of those, put to inverse kinematics",
+       FIELD(completion.max_solves),
+       {}},
+      {"grasps.starts",
+       Whole(1, 1000),
+       "restarts of inverse kinematics",
+       FIELD(completion.grasp.kinematics.ik.max_starts),
+       {}},
+      {"grasps.tip_tolerance", Real(1e-4, 0.01, "m"), "a fingertip may miss its contact by this",
+       FIELD(completion.grasp.kinematics.ik.tip_tolerance), AtMost(5e-4, reached)},
+      {"grasps.max_cone_deg", Real(1.0, 180.0, "deg"),
+       "between a distal axis and the inward normal",
+       FIELD(completion.grasp.kinematics.ik.max_cone_deg), AtMost(60.0, reached)},
+      {"grasps.contact_depth", Real(0.0, 0.01, "m"),
+       "a contacting distal link may enter the object by this",
+       FIELD(completion.grasp.kinematics.ik.contact_depth), AtMost(1e-3, reached)},
+  };
+}
+
+Settings LiftSettings() {
+  const char* held = "a lifted object follows for 0.1 m within 0.01 m and 15 deg, and stays";
+  return {
+      {"lift.height", Real(0.01, 1.0, "m"), "along the lift's direction", FIELD(lift.height),
+       AtLeast(0.10, held)},
+      {"lift.closing_seconds",
+       Real(0.0, 10.0, "s"),
+       "in which the grasp's forces rise",
+       FIELD(lift.closing_seconds),
+       {}},
+      {"lift.lift_seconds",
+       Real(0.05, 10.0, "s"),
+       "in which the object moves",
+       FIELD(lift.lift_seconds),
+       {}},
+      {"lift.hold_seconds", Real(0.0, 10.0, "s"), "it is held after that", FIELD(lift.hold_seconds),
+       AtLeast(0.3, "only fingers touch a lifted object in its last 0.3 s")},
+      {"lift.friction_reserve",
+       Real(0.01, 1.0),
+       "share of the friction cone that forces are chosen in",
+       FIELD(lift.friction_reserve),
+       {}},
+      {"lift.max_shift", Real(0.0, 1.0, "m"), "the object may lag behind by this",
+       FIELD(lift.max_shift), AtMost(0.01, held)},
+      {"lift.max_turn_deg", Real(0.0, 180.0, "deg"), "the object may turn by this",
+       FIELD(lift.max_turn_deg), AtMost(15.0, held)},
+  };
+}
+
+Settings MotionSettings() {
+  const char* clean = "a frame is clean within 0.0005 m, 60 deg and 0.001 m of overlap";
+  const char* whole = "the hand comes from 0.2 m off and lifts the object by 0.1 m";
+  return {
+      {"motion.order",
+       kNoNumber,
+       "of keyframes: reverse solves the last first",
+       FIELD(motion.order),
+       {}},
+      {"motion.fps", Real(1.0, 120.0, "Hz"), "frames a second", FIELD(motion_timing.fps),
+       AtLeast(30.0, "30 frames a second are checked")},
+      {"motion.approach_seconds",
+       Real(0.0, 10.0, "s"),
+       "from the start to the first contact",
+       FIELD(motion_timing.approach_seconds),
+       {}},
+      {"motion.closing_seconds",
+       Real(0.0, 10.0, "s"),
+       "in which the fingers close",
+       FIELD(motion_timing.closing_seconds),
+       {}},
+      {"motion.lift_seconds",
+       Real(0.0, 10.0, "s"),
+       "in which the hand rises",
+       FIELD(motion_timing.lift_seconds),
+       {}},
+      {"motion.lift_height", Real(0.0, 1.0, "m"), "by which the hand rises",
+       FIELD(motion_timing.lift_height), AtLeast(0.10, whole)},
+      {"motion.approach_distance", Real(0.0, 1.0, "m"), "how far off the palm starts",
+       FIELD(motion.approach_distance), AtLeast(0.20, whole)},
+      {"motion.keyframe_starts",
+       Whole(1, 1000),
+       "restarts of inverse kinematics at a keyframe",
+       FIELD(motion.keyframe_starts),
+       {}},
+      {"motion.frame_starts",
+       Whole(1, 1000),
+       "restarts of inverse kinematics in between",
+       FIELD(motion.frame_starts),
+       {}},
+      {"motion.smoothing_sweeps",
+       Whole(0, 100),
+       "each frame drawn to the mean of its neighbours",
+       FIELD(motion.smoothing_sweeps),
+       {}},
+      {"motion.tip_tolerance", Real(1e-4, 0.01, "m"),
+       "a fingertip may miss its contact by this before a frame counts as loosened",
+       FIELD(motion.ik.tip_tolerance), AtMost(5e-4, clean)},
+      {"motion.max_cone_deg", Real(1.0, 180.0, "deg"),
+       "between a distal axis and the inward normal, likewise", FIELD(motion.ik.max_cone_deg),
+       AtMost(60.0, clean)},
+      {"motion.contact_depth", Real(0.0, 0.01, "m"),
+       "a contacting distal link may enter the object by this, likewise",
+       FIELD(motion.ik.contact_depth), AtMost(1e-3, clean)},
+  };
+}
+
+#undef FIELD
+
+}  // namespace
+
+const std::vector<PlannerSetting>& SettingsTable() {
+  static const Settings all = [] {
+    Settings rows;
+    for (const Settings& stage : {GraphSettings(), MppiSettings(), CertifySettings(),
+                                  GraspsSettings(), LiftSettings(), MotionSettings()}) {
+      rows.insert(rows.end(), stage.begin(), stage.end());
+    }
+    return rows;
+  }();
+  return all;
+}
+
+}  // namespace pregrasp
