@@ -147,12 +147,14 @@ Energy SimbodyModel::CalcEnergy(const std::vector<BodyState>& bodies, const Vect
 
 void SimbodyModel::Predict(const std::vector<BodyState>& bodies,
                            const std::vector<BodyKernel>& kernels, const Vector3& gravity,
-                           double dt, std::vector<BodyMotion>* motions) {
+                           const Vector3& f_Ocm_W, double dt, std::vector<BodyMotion>* motions) {
   Impl& m = *impl_;
   m.SetState(bodies);
   m.system.realize(m.state, SimTK::Stage::Position);
   for (int i = 0; i < num_bodies(); ++i) {
-    m.SetForce(i, Vector3::Zero(), m.bodies[i].getBodyMass(m.state) * gravity);
+    Vector3 f_W = m.bodies[i].getBodyMass(m.state) * gravity;
+    if (i == 0) f_W += f_Ocm_W;
+    m.SetForce(i, Vector3::Zero(), f_W);
   }
   m.CalcVelocityChange();
   m.state.updU() += dt * m.du;

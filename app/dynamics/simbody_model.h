@@ -33,10 +33,11 @@ class SimbodyModel {
   /// Potential energy is 0 at W's origin.
   Energy CalcEnergy(const std::vector<BodyState>& bodies, const Vector3& gravity);
 
-  /// Begins a step: takes poses and velocities, adds gravity's impulse, and gives the motions that
-  /// the contacts start from.
+  /// Begins a step: takes poses and velocities, adds the impulses of gravity and of an outer force
+  /// on the first body's centre of mass, and gives the motions that the contacts start from.
   void Predict(const std::vector<BodyState>& bodies, const std::vector<BodyKernel>& kernels,
-               const Vector3& gravity, double dt, std::vector<BodyMotion>* motions);
+               const Vector3& gravity, const Vector3& f_Ocm_W, double dt,
+               std::vector<BodyMotion>* motions);
 
   /// Ends the step that Predict began: applies the impulses and moves the bodies.
   void Advance(const std::vector<BodyImpulse>& impulses, double dt, std::vector<BodyState>* bodies);

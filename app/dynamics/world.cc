@@ -34,8 +34,8 @@ StepScratch& GetThreadScratch() {
   return scratch;
 }
 
-// v and w from the state, gravity's impulse added.
-void Predict(const BodyKernel& kernel, const BodyState& body, const Vector3& gravity, double dt,
+// v and w from the state, the impulse of an acceleration of the centre of mass added.
+void Predict(const BodyKernel& kernel, const BodyState& body, const Vector3& a_W, double dt,
              BodyMotion* motion) {
   motion->R_WB = body.q_WB.toRotationMatrix();
   motion->R_WP = kernel.CalcR_WP(motion->R_WB);
@@ -43,7 +43,7 @@ void Predict(const BodyKernel& kernel, const BodyState& body, const Vector3& gra
   motion->p_WB = body.p_WB;
   motion->p_WBcm = body.p_WB + c_W;
   motion->w_WB = body.w_WB;
-  motion->v_WBcm = body.v_WB + body.w_WB.cross(c_W) + dt * gravity;
+  motion->v_WBcm = body.v_WB + body.w_WB.cross(c_W) + dt * a_W;
 }
 
 // Moves a body to the end of the step. The orientation follows the angular velocity halfway through
@@ -238,8 +238,9 @@ Convergence World::Step(WorldState& state, std::vector<ContactPoint>* contacts) 
   const int n = num_movables();
   scratch.motions.resize(n);
   for (int i = 0; i < n; ++i) {
-    Predict(impl.kernels[i], state.bodies[i], impl.scene.gravity, impl.config.dt,
-            &scratch.motions[i]);
+    Vector3 a_W = impl.scene.gravity;
+    if (i == 0) a_W += impl.kernels[0].inv_mass * state.f_Ocm_W;
+    Predict(impl.kernels[i], state.bodies[i], a_W, impl.config.dt, &scratch.motions[i]);
   }
   const Convergence convergence = impl.SolveContacts(state, &scratch);
   for (int i = 0; i < n; ++i) {
@@ -266,7 +267,8 @@ Convergence World::StepWithSimbody(WorldState& state, std::vector<ContactPoint>*
   const Impl& impl = *impl_;
   StepScratch& scratch = GetThreadScratch();
   std::unique_ptr<SimbodyModel> model = impl_->TakeModel();
-  model->Predict(state.bodies, impl.kernels, impl.scene.gravity, impl.config.dt, &scratch.motions);
+  model->Predict(state.bodies, impl.kernels, impl.scene.gravity, state.f_Ocm_W, impl.config.dt,
+                 &scratch.motions);
   const Convergence convergence = impl.SolveContacts(state, &scratch);
   scratch.solver.SumImpulses(scratch.motions, scratch.contacts, &scratch.impulses);
   model->Advance(scratch.impulses, impl.config.dt, &state.bodies);

@@ -74,6 +74,8 @@ struct WorldState {
   double t = 0.0;
   std::vector<BodyState> bodies;                    ///< by MovableIndex; the object first
   std::array<FingertipState, kNumFingers> fingers;  ///< a plan uses thumb and index, a lift all
+  /// An outer force on the object, at its centre of mass, in every step until it is set anew [N].
+  Vector3 f_Ocm_W = Vector3::Zero();
   /// Impulses of the last step by (body pair, feature), to start the next one from and to keep
   /// loaded points in contact; opaque to callers.
   struct CachedImpulse {
@@ -82,5 +84,14 @@ struct WorldState {
   };
   std::vector<CachedImpulse> cache;
 };
+
+/// One row of a trace: the state after a step and the contacts of that step.
+struct TraceRow {
+  WorldState state;
+  std::vector<ContactPoint> contacts;
+};
+
+/// Which stepper runs: World's Step or StepWithSimbody.
+enum class Stepper { kKernel, kSimbody };
 
 }  // namespace pregrasp

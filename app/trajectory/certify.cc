@@ -4,15 +4,10 @@
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
+#include "app/dynamics/tip_overlap.h"
 
 namespace pregrasp {
 namespace {
-
-void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* turn_deg) {
-  const RigidTransform X_a = a.bodies.front().X_WB(), X_b = b.bodies.front().X_WB();
-  *shift = (X_b.translation() - X_a.translation()).norm();
-  *turn_deg = RadToDeg(RotationAngle(X_a.linear(), X_b.linear()));
-}
 
 // What stands in the way; each demand is written so that a NaN does not meet it.
 std::vector<CertifyReason> Judge(const PlanOutcome& outcome, const CertifyConfig& config) {
@@ -40,12 +35,18 @@ void CheckHold(const PlanOutcome& outcome, double seconds, double dt) {
 
 }  // namespace
 
+void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* turn_deg) {
+  const RigidTransform X_a = a.bodies.front().X_WB(), X_b = b.bodies.front().X_WB();
+  *shift = (X_b.translation() - X_a.translation()).norm();
+  *turn_deg = RadToDeg(RotationAngle(X_a.linear(), X_b.linear()));
+}
+
 const char* CertifyReasonText(CertifyReason reason) {
   switch (reason) {
     case CertifyReason::kDiverged:
       return "the object left the scene";
     case CertifyReason::kTipOverlap:
-      return "a fingertip overlaps the surroundings by more than 1 mm";
+      return "a fingertip overlaps the surroundings by more than 0.3 mm";
     case CertifyReason::kDoesNotHold:
       return "the object does not stay where it is while the last targets are kept";
     case CertifyReason::kNeverTouches:

@@ -19,7 +19,7 @@ struct CertifyConfig {
 /// Why a plan is not certified.
 enum class CertifyReason {
   kDiverged,       ///< the object left the scene
-  kTipOverlap,     ///< a fingertip sphere overlaps the surroundings by more than 1 mm at some step
+  kTipOverlap,     ///< a fingertip sphere overlaps the surroundings by more than 0.3 mm at some step
   kDoesNotHold,    ///< the object moves on in the hold
   kNeverTouches,   ///< no finger ever touches the object
   kNotConverged,   ///< contact forces were not found to the accuracy that a verdict needs
@@ -39,6 +39,9 @@ struct Certificate {
   double step_turn_deg = 0.0;   ///< and orientations [degrees]
   std::vector<TraceRow> trace;  ///< every step at the full step, the start first
 };
+
+/// How far the object is in `b` from where it is in `a` [m], and how far turned [degrees].
+void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* turn_deg);
 
 /// Certifies the world plan `plan` (honesty rules 4 and 5).
 /// @param half_world  the same scene at half the step.

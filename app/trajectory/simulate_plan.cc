@@ -5,6 +5,7 @@
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
+#include "app/dynamics/tip_overlap.h"
 
 namespace pregrasp {
 namespace {
@@ -157,16 +158,12 @@ class PlanRunner {
   void CheckTips(double seconds) {
     const std::vector<RigidTransform> X_WB = world_.GetPoses(state_);
     bool overlaps = false;
-    std::array<Vector3, kNumPlanningFingers> p_WTip;
     for (int j = 0; j < kNumPlanningFingers; ++j) {
-      const FingertipState& tip = state_.fingers[j];
-      if (!tip.on) continue;
-      const double radius = FingertipRadius(static_cast<Finger>(j));
-      p_WTip[j] = X_WB[0] * Vector3(tip.p_OC + radius * tip.nhat_O);
-      const double overlap = radius - environment_.Calc(p_WTip[j], X_WB).phi;
+      if (!state_.fingers[j].on) continue;
+      const double overlap = CalcTipOverlap(state_, static_cast<Finger>(j), X_WB, environment_);
       PREGRASP_CHECK(std::isfinite(overlap), j, overlap);  // std::max passes over a NaN
       outcome_.max_tip_overlap = std::max(outcome_.max_tip_overlap, overlap);
-      overlaps |= overlap > kTipOverlapAllowed;
+      overlaps |= !(overlap <= kTipOverlapAllowed);
     }
     if (overlaps) outcome_.tip_overlap_seconds += seconds;
     if (state_.fingers[0].on && state_.fingers[1].on) {

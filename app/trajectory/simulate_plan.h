@@ -12,8 +12,9 @@ namespace pregrasp {
 struct PlanOutcome {
   WorldPlan plan;                        ///< with the targets that were used
   std::vector<WorldState> stage_starts;  ///< the state when each stage begins, its fingers put on
-  WorldState end;                        ///< after the hold
-  WorldState hold_start;                 ///< when the last target is reached
+  /// After the hold; where the state is not finite any more, the last stage's start.
+  WorldState end;
+  WorldState hold_start;  ///< when the last target is reached
 
   double seconds = 0.0;              ///< simulated, hold included
   double contact_seconds = 0.0;      ///< summed over fingers, while touching
@@ -22,7 +23,7 @@ struct PlanOutcome {
   double max_force = 0.0;            ///< [N]
   double max_speed = 0.0;            ///< of the object's origin [m/s]
   double max_penetration = 0.0;      ///< between bodies [m]; by Stepper::kSimbody only
-  double max_tip_overlap = 0.0;      ///< deepest overlap of a touching fingertip sphere with the
+  double max_tip_overlap = 0.0;      ///< deepest overlap of a fingertip sphere with the
                                      ///< surroundings [m]
   double tip_overlap_seconds = 0.0;  ///< time with more than kTipOverlapAllowed
   double min_tip_distance = 1e9;     ///< between the two fingertips while both are on [m]
@@ -34,9 +35,6 @@ struct PlanOutcome {
   bool diverged = false;
 };
 
-/// Honesty rule 4: a fingertip sphere may overlap the environment by at most this [m].
-inline constexpr double kTipOverlapAllowed = 0.001;
-
 /// What happens to the object when all fingers let go.
 struct Released {
   double shift = 0.0;     ///< of its origin in 1 s [m]
@@ -45,15 +43,6 @@ struct Released {
   bool stays = false;
 };
 Released SimulateRelease(const World& world, WorldState state);
-
-/// Which stepper runs.
-enum class Stepper { kKernel, kSimbody };
-
-/// One row of a trace: the state after a step and the contacts of that step.
-struct TraceRow {
-  WorldState state;
-  std::vector<ContactPoint> contacts;
-};
 
 /// Simulates a relative plan from `start` through its stages and the hold.
 PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,

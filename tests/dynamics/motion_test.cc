@@ -146,6 +146,21 @@ TEST(MotionTest, HalvingTheStepHalvesTheError) {
   EXPECT_LT(e960, 0.7 * e480);
 }
 
+TEST(MotionTest, AnOuterForceAcceleratesTheCentreOfMassAndNothingElse) {
+  // Against gravity, off the body's origin: what is left lifts it, and nothing turns it.
+  Body box = MakeBox("box", Vector3(0.1, 0.08, 0.06), At(0, 0, 1), 0.4, 0.4);
+  box.mass_properties->p_BoBcm = Vector3(0.02, 0.01, -0.01);
+  const World world(MakeScene(box));
+  WorldState state = world.InitialState();
+  state.f_Ocm_W = Vector3(0.2, 0.0, 0.4 * 9.81 + 0.1);
+  for (int i = 0; i < 240; ++i) world.Step(state);
+  EXPECT_LT((state.bodies[0].v_WB - Vector3(0.5, 0.0, 0.25)).norm(), 1e-12);
+  EXPECT_LT(state.bodies[0].w_WB.norm(), 1e-12);
+  state.f_Ocm_W = Vector3(0.0, 0.0, 0.4 * 9.81);
+  for (int i = 0; i < 240; ++i) world.Step(state);
+  EXPECT_LT((state.bodies[0].v_WB - Vector3(0.5, 0.0, 0.25)).norm(), 1e-12);
+}
+
 TEST(MotionTest, AThinRulerDroppedOnATableStaysAboveIt) {
   for (const double tilt : {0.0, 5.0, 30.0}) {
     const World world(MakeScene(MakeBox("ruler", Vector3(0.3, 0.03, 0.002),

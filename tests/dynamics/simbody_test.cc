@@ -121,6 +121,16 @@ TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12WithFiveFingersWhoseSpringsChangeB
   for (const FingertipState& tip : state.fingers) EXPECT_GT(tip.f_W.norm(), 0.0);
 }
 
+TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12UnderAnOuterForceOffTheBodysOrigin) {
+  Body box = MakeBox("box", Vector3(0.1, 0.08, 0.06), At(0, 0, 0.035, Vector3(3, 2, 40)), 0.4, 0.4);
+  box.mass_properties->p_BoBcm = Vector3(0.01, -0.008, 0.004);
+  const World world(MakeScene(box, {MakeTable(), MakeBox("neighbour", Vector3(0.05, 0.1, 0.12),
+                                                         At(0.15, 0, 0.06), 0.6, 0.3)}));
+  WorldState state = world.InitialState();
+  state.f_Ocm_W = Vector3(3.0, 1.0, 2.0);
+  EXPECT_LT(CompareSteppers(world, 20, &state), 1e-12);
+}
+
 TEST(SimbodyTest, StepAgreesWithSimbodyTo1em12WhileAnOverlapIsPushedOut) {
   const World world(MakeScene(MakeBox("box", Vector3(0.1, 0.08, 0.06), At(0, 0, 0.028), 0.4, 0.4)));
   WorldState state = world.InitialState();

@@ -15,19 +15,6 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// One finger presses the top of the ruler and its target travels along +x.
-WorldPlan MakeDrag(double depth, double travel) {
-  WorldPlan plan;
-  plan.stages.resize(1);
-  WorldPlan::Finger& index = plan.stages[0][1];
-  index.on = true;
-  index.contact = {true, Vector3(0.0, 0.0, 0.0015), Vector3::UnitZ()};
-  for (int k = 1; k <= 4; ++k) {
-    index.p_WTargets.emplace_back(-0.16 + travel * k / 4, 0.0, 0.003 - depth);
-  }
-  return plan;
-}
-
 class CertifyTest : public ::testing::Test {
  protected:
   Certificate Certify(const WorldPlan& plan, const CertifyConfig& config = {}) {
@@ -41,7 +28,7 @@ class CertifyTest : public ::testing::Test {
 };
 
 TEST_F(CertifyTest, ADragThatEndsAtRestIsCertifiedAtBothSteps) {
-  const Certificate result = Certify(MakeDrag(0.01, 0.06));
+  const Certificate result = Certify(MakeRulerDrag(0.01, 0.06));
   EXPECT_TRUE(result.certified) << CertifyReasonText(result.reasons.front());
   EXPECT_GT(result.full.end.bodies[0].p_WB.x(), -0.16 + 0.04);
   EXPECT_LT(result.step_shift, 0.002);
@@ -56,7 +43,7 @@ TEST_F(CertifyTest, ALimitThatIsNoNumberCertifiesNothing) {
     CertifyConfig config;
     config.hold_seconds = 0.1;
     config.*limit = kNan;
-    const Certificate result = Certify(MakeDrag(0.01, 0.06), config);
+    const Certificate result = Certify(MakeRulerDrag(0.01, 0.06), config);
     EXPECT_FALSE(result.certified);
     EXPECT_EQ(result.reasons.front(), CertifyReason::kDoesNotHold);
   }
@@ -66,12 +53,12 @@ TEST_F(CertifyTest, AHoldThatCannotBeSimulatedIsOurBug) {
   for (const double seconds : {kNan, -1.0, 1e300, std::numeric_limits<double>::infinity()}) {
     CertifyConfig config;
     config.hold_seconds = seconds;
-    EXPECT_THROW(Certify(MakeDrag(0.01, 0.06), config), InternalError) << seconds;
+    EXPECT_THROW(Certify(MakeRulerDrag(0.01, 0.06), config), InternalError) << seconds;
   }
 }
 
 TEST_F(CertifyTest, ATargetThatIsNoNumberIsOurBug) {
-  WorldPlan plan = MakeDrag(0.01, 0.06);
+  WorldPlan plan = MakeRulerDrag(0.01, 0.06);
   plan.stages[0][1].p_WTargets[2].x() = kNan;
   EXPECT_THROW(Certify(plan), InternalError);
 }
@@ -100,7 +87,7 @@ TEST_F(CertifyTest, APlanWithoutContactIsNotCertified) {
 }
 
 TEST_F(CertifyTest, ARulerDraggedOffTheTableIsNotCertified) {
-  const Certificate result = Certify(MakeDrag(0.01, 0.40));
+  const Certificate result = Certify(MakeRulerDrag(0.01, 0.40));
   EXPECT_FALSE(result.certified);
 }
 
@@ -173,6 +160,32 @@ TEST(CertifyConvergenceTest, WhatIsLeftAtRestBelowTheToleranceDoesNotMatter) {
   EXPECT_TRUE(result.certified);
   EXPECT_NEAR(result.full.unconverged_seconds, result.full.seconds, 1e-9);
   EXPECT_LT(result.full.unresolved, 1e-4);
+// A box that a finger presses from the side, `z` above the table, and does not move.
+Certificate PressFromTheSide(double z) {
+  Scene scene = MakeRulerScene();
+  Body& box = scene.object();
+  box.shape = Box{{0.10, 0.10, 0.04}};
+  box.X_WB.translation() = Vector3(-0.3, 0.0, 0.02);
+  box.mass_properties = CalcMassProperties(box.shape, 0.3);
+  StepConfig half;
+  half.dt /= 2;
+  const World world(scene), half_world(scene, half);
+  WorldPlan plan;
+  plan.stages.resize(1);
+  WorldPlan::Finger& index = plan.stages[0][1];
+  index.on = true;
+  index.contact = {true, Vector3(-0.05, 0.0, z - 0.02), -Vector3::UnitX()};
+  index.p_WTargets.assign(4, Vector3(-0.35 + 0.01, 0.0, z));
+  return CertifyPlan(world, half_world, EnvironmentDistance(scene), world.InitialState(), plan,
+                     PlanTiming(), CertifyConfig());
+}
+
+TEST(CertifyTipTest, AFingertipMayBe3TenthsOfAMillimetreInTheSurroundingsAndNoMore) {
+  EXPECT_TRUE(PressFromTheSide(0.0090 - 0.00025).certified);
+  const Certificate deeper = PressFromTheSide(0.0090 - 0.00035);
+  EXPECT_FALSE(deeper.certified);
+  EXPECT_EQ(deeper.reasons, std::vector<CertifyReason>{CertifyReason::kTipOverlap});
+  EXPECT_NEAR(deeper.full.max_tip_overlap, 0.00035, 2e-5);
 }
 
 }  // namespace

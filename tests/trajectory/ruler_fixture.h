@@ -35,6 +35,19 @@ inline Scene MakeRulerScene() {
   return scene;
 }
 
+/// One finger presses the middle of the ruler's top and its target travels along +x [m].
+inline WorldPlan MakeRulerDrag(double depth, double travel) {
+  WorldPlan plan;
+  plan.stages.resize(1);
+  WorldPlan::Finger& index = plan.stages[0][1];
+  index.on = true;
+  index.contact = {true, Vector3(0.0, 0.0, 0.0015), Vector3::UnitZ()};
+  for (int k = 1; k <= 4; ++k) {
+    index.p_WTargets.emplace_back(-0.16 + travel * k / 4, 0.0, 0.003 - depth);
+  }
+  return plan;
+}
+
 /// A box's triangle mesh with the faces of size (x, y) cut into `n` strips along x.
 inline TriangleMesh MakeStripMesh(const Vector3& size, int n) {
   TriangleMesh mesh;
