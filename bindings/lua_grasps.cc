@@ -6,9 +6,9 @@
 namespace pregrasp {
 namespace {
 
-const Schema kLift{
-    "Lift",
-    {"held", "reasons", "height", "shift_mm", "turn_deg", "slip_mm", "direction_W", "step_id"}};
+const Schema kLift{"Lift",
+                   {"held", "reasons", "text", "height", "shift_mm", "turn_deg", "slip_mm", "direction_W",
+                    "pushes", "soft", "stiff", "step_id"}};
 
 constexpr int kGraspKib = 20;
 
@@ -114,11 +114,15 @@ Pushed GraspLift(lua_State* L, LuaGrasp& grasp) {
   RecordWriter(L, kLift)
       .Set("held", lift.held)
       .Set("reasons", lift.reasons)
+      .Set("text", lift.sentence)
       .Set("height", lift.height_m)
       .Set("shift_mm", lift.shift_mm)
       .Set("turn_deg", lift.turn_deg)
       .Set("slip_mm", lift.slip_mm)
       .Set("direction_W", lift.direction_W)
+      .Set("pushes", lift.pushes)
+      .Set("soft", lift.soft)
+      .Set("stiff", lift.stiff)
       .Set("step_id", grasp.lift->id());
   return {1};
 }

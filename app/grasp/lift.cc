@@ -1,143 +1,175 @@
 #include "app/grasp/lift.h"
 
-#include <algorithm>
-#include <cmath>
+#include <fmt/format.h>
+
+#include <tuple>
 
 #include "app/core/check.h"
 
 namespace pregrasp {
 namespace {
 
-constexpr double kSweepStep = 0.005;    // [m]
-constexpr double kSweepOverlap = 1e-3;  // a sampled point may graze the surroundings [m]
-constexpr double kSameContact = 2e-3;   // a pressing finger that the grasp uses where it is [m]
+constexpr double kPushShare = 0.5;  // of the object's weight
 
-bool IsFree(const RigidTransform& X_WO, const std::vector<RigidTransform>& X_WB,
-            const PointCloud& cloud, const EnvironmentDistance& environment,
-            const Vector3& direction_W, double height) {
-  for (double s = kSweepStep; s <= height + 1e-9; s += kSweepStep) {
-    for (Eigen::Index i = 0; i < cloud.P.rows(); ++i) {
-      const Vector3 p_W = X_WO * Vector3(cloud.P.row(i)) + s * direction_W;
-      if (environment.Calc(p_W, X_WB).phi < -kSweepOverlap) return false;
-    }
-  }
-  return true;
-}
-
-double Ease(double s) { return s * s * (3.0 - 2.0 * s); }
-
-// The grasp's forces on the object, in O: inside a share of the cone where that is possible.
-MatrixX3 ChooseForces(const GraspWorld& world, const GraspResult& grasp, const Matrix3& R_WO,
-                      double friction_reserve) {
-  const std::vector<WrenchContact> contacts = world.ToWrenchContacts(grasp.contacts);
-  WrenchConfig config = world.MakeWrenchConfig(0.5, R_WO);
-  config.mu *= friction_reserve;
-  const WrenchResult reserved = CalcWrench(contacts, config);
-  if (reserved.feasible()) return reserved.forces;
-  PREGRASP_CHECK(grasp.wrench.has_value());
-  return grasp.wrench->forces;
-}
-
-// Drives the five fingers' targets.
-class Lifter {
+// One lift with fingers of one stiffness.
+class Lift {
  public:
-  Lifter(const World& world, const WorldState& state, const LiftConfig& config)
-      : world_(world), config_(config), state_(state) {}
-
-  // Puts the grasp's fingers on and remembers the targets that give its forces at rest.
-  void Grasp(const GraspResult& grasp, const MatrixX3& f_O) {
-    const RigidTransform X_WO = state_.bodies.front().X_WB();
-    for (std::size_t i = 0; i < grasp.contacts.size(); ++i) {
-      const GraspContact& contact = grasp.contacts[i];
-      const int f = static_cast<int>(contact.finger);
-      const bool pressing =
-          state_.fingers[f].on && (state_.fingers[f].p_OC - contact.p_OC).norm() < kSameContact;
-      if (!pressing) world_.PutFinger(state_, contact.finger, contact.p_OC);
-      const Vector3 f_W = X_WO.linear() * Vector3(f_O.row(static_cast<Eigen::Index>(i)));
-      from_[f] = state_.fingers[f].p_WTarget;
-      to_[f] = X_WO * contact.p_OC + f_W / world_.scene().fingertips.stiffness;
-      used_[f] = true;
-    }
-    Run(config_.closing_seconds,
-        [&](int f, double s) -> Vector3 { return from_[f] + s * (to_[f] - from_[f]); });
-    // Fingers that only pressed leave once the grasp holds.
-    for (int f = 0; f < kNumFingers; ++f) {
-      if (state_.fingers[f].on && !used_[f]) world_.LiftFinger(state_, static_cast<Finger>(f));
+  Lift(const LiftWorlds& worlds, const WorldState& state, const GraspResult& grasp,
+       const LiftWay& way, const LiftConfig& config)
+      : worlds_(worlds), state_(state), way_(way), config_(config) {
+    contacts_ = MoveToPressing(state, grasp.contacts);
+    const std::vector<WrenchContact> wrench_contacts = worlds.grasp.ToWrenchContacts(contacts_);
+    const WrenchConfig wrench =
+        worlds.grasp.MakeWrenchConfig(kMinForce, state.bodies.front().X_WB().linear());
+    if (CalcWrenchStatus(wrench_contacts, wrench) != WrenchStatus::kFeasible) {
+      // A finger has slipped by a millimetre from where the grasp has it: its own place will do.
+      contacts_ = grasp.contacts;
     }
   }
 
-  void Lift(const Vector3& way_W) {
-    Run(config_.lift_seconds, [&](int f, double s) -> Vector3 { return to_[f] + Ease(s) * way_W; });
-    Run(config_.hold_seconds, [&](int f, double) -> Vector3 { return to_[f] + way_W; });
+  std::optional<GraspForces> ChooseForces(double k) const {
+    const WrenchConfig wrench =
+        worlds_.grasp.MakeWrenchConfig(kMinForce, state_.bodies.front().X_WB().linear());
+    return ChooseGraspForces(worlds_.grasp.ToWrenchContacts(contacts_), wrench, k, config_.forces);
   }
 
-  const WorldState& state() const { return state_; }
+  LiftOutcome Simulate(const World& world, const LiftGrip& grip, Stepper stepper,
+                       bool trace) const {
+    return SimulateLift(world, worlds_.grasp.environment(), state_, grip, way_, config_, stepper,
+                        trace);
+  }
+
+  // Forces and simulation with fingers of another stiffness, without a second look at half the
+  // step.
+  bool HoldsWith(double k) const {
+    const std::optional<GraspForces> forces = ChooseForces(k);
+    if (!forces || !forces->is_stiff) return false;
+    const LiftGrip grip{contacts_, forces->forces, k};
+    return JudgeLift(Simulate(worlds_.full, grip, Stepper::kKernel, false)).empty();
+  }
+
+  int CountPushes(const WorldState& top) const {
+    const double force = kPushShare * worlds_.full.scene().object_weight();
+    const Matrix3 R_WO = top.bodies.front().X_WB().linear();
+    int held = 0;
+    for (int i = 0; i < kNumPushes; ++i) {
+      const Vector3 force_W = (i % 2 == 0 ? force : -force) * R_WO.col(i / 2);
+      held += WithstandsPush(SimulatePush(worlds_.full, worlds_.grasp.environment(), top, force_W));
+    }
+    return held;
+  }
+
+  const std::vector<GraspContact>& contacts() const { return contacts_; }
 
  private:
-  template <typename Target>
-  void Run(double seconds, const Target& target) {
-    const int steps = std::max(1, static_cast<int>(std::lround(seconds / world_.config().dt)));
-    for (int i = 1; i <= steps; ++i) {
-      for (int f = 0; f < kNumFingers; ++f) {
-        if (used_[f]) state_.fingers[f].p_WTarget = target(f, static_cast<double>(i) / steps);
-      }
-      world_.Step(state_);
-    }
-  }
+  static constexpr double kMinForce = 0.5;  // of every finger (design, section 4) [N]
 
-  const World& world_;
+  const LiftWorlds& worlds_;
+  const WorldState& state_;
+  const LiftWay& way_;
   const LiftConfig& config_;
-  WorldState state_;
-  std::array<Vector3, kNumFingers> from_, to_;
-  std::array<bool, kNumFingers> used_{};
+  std::vector<GraspContact> contacts_;
 };
+
+std::string DescribeDirection(const LeastStiffness& least) {
+  const bool turns = least.turn.norm() > least.shift.norm();
+  const Vector3 axis = (turns ? least.turn : least.shift).normalized();
+  return fmt::format("{} ({:.2f}, {:.2f}, {:.2f}) of the object",
+                     turns ? "as it turns about" : "as it shifts along", axis.x(), axis.y(),
+                     axis.z());
+}
+
+std::string ExplainReason(const LiftResult& lift, LiftReason reason, const Scene& scene) {
+  switch (reason) {
+    case LiftReason::kNoFreeDirection:
+      return "in no direction from up to level is the object's way free";
+    case LiftReason::kNeverFree:
+      return fmt::format("after {:.0f} cm the object is not free of its surroundings",
+                         1e2 * lift.way.length);
+    case LiftReason::kNoForces:
+      return "no forces inside the friction cones balance the weight";
+    case LiftReason::kGivesWay:
+      return fmt::format("the grasp gives way: its stiffness is {:.1f} N/m {}",
+                         lift.forces->least.value, DescribeDirection(lift.forces->least));
+    case LiftReason::kDiverged:
+      return "the object left the scene";
+    case LiftReason::kTipOverlap:
+      return fmt::format("the fingertip of {} enters the surroundings by {:.1f} mm",
+                         FingerName(lift.deepest_tip), 1e3 * lift.tip_overlap);
+    case LiftReason::kDoesNotFollow:
+      return fmt::format(
+          "the object does not follow: it comes to be {:.0f} mm and {:.0f} degrees off",
+          1e3 * lift.shift, lift.turn_deg);
+    case LiftReason::kStillTouches:
+      return fmt::format("{} still touches the object at the end",
+                         scene.bodies.at(lift.touching_body->value).name);
+    case LiftReason::kStepDependent:
+      return "half the time step gives another verdict";
+  }
+  return "";
+}
 
 }  // namespace
 
-Vector3 FindLiftDirection(const World& world, const WorldState& state, const PointCloud& cloud,
-                          const EnvironmentDistance& environment, double height) {
-  const std::vector<RigidTransform> X_WB = world.GetPoses(state);
-  const Vector3 up = -world.scene().gravity.normalized();
-  const Matrix3 R_WUp = FrameFromNormal(up);
-  for (int tilt = 0; tilt <= 90; tilt += 15) {
-    for (int azimuth = 0; azimuth < 360; azimuth += 30) {
-      const double a = DegToRad(tilt), b = DegToRad(azimuth);
-      const Vector3 direction =
-          R_WUp * Vector3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
-      if (IsFree(X_WB.front(), X_WB, cloud, environment, direction, height)) return direction;
-      if (tilt == 0) break;
-    }
+LiftResult LiftGrasp(const LiftWorlds& worlds, const WorldState& state, const GraspResult& grasp,
+                     const LiftWay& way, const LiftConfig& config) {
+  config.Validate();
+  PREGRASP_CHECK(grasp.feasible());
+  LiftResult result;
+  result.way = way;
+  result.end = state;
+  if (!way.is_free()) {
+    result.reasons.push_back(way.status == LiftWayStatus::kNeverFree
+                                 ? LiftReason::kNeverFree
+                                 : LiftReason::kNoFreeDirection);
+    return result;
   }
-  return up;
+  const Lift lift(worlds, state, grasp, way, config);
+  const double k = worlds.full.scene().fingertips.grasp_stiffness;
+  result.forces = lift.ChooseForces(k);
+  if (!result.forces || !result.forces->is_stiff) {
+    result.reasons.push_back(result.forces ? LiftReason::kGivesWay : LiftReason::kNoForces);
+    return result;
+  }
+  result.grip = {lift.contacts(), result.forces->forces, k};
+  result.simulated = true;
+  static_cast<LiftOutcome&>(result) =
+      lift.Simulate(worlds.full, result.grip, Stepper::kSimbody, true);
+  result.reasons = JudgeLift(result);
+  if (!result.reasons.empty()) return result;
+  if (!JudgeLift(lift.Simulate(worlds.half, result.grip, Stepper::kSimbody, false)).empty()) {
+    result.reasons.push_back(LiftReason::kStepDependent);
+    return result;
+  }
+  result.held = true;
+  result.pushes = lift.CountPushes(result.end);
+  result.soft = lift.HoldsWith(kSoftStiffness);
+  result.stiff = lift.HoldsWith(kStiffStiffness);
+  return result;
 }
 
-LiftResult SimulateLift(const World& world, const WorldState& state, const GraspWorld& grasp_world,
-                        const GraspResult& grasp, const Vector3& direction_W,
-                        const LiftConfig& config) {
-  PREGRASP_CHECK(config.height > 0.0 && config.lift_seconds > 0.0, config.height,
-                 config.lift_seconds);
-  PREGRASP_CHECK(config.closing_seconds >= 0.0 && config.hold_seconds >= 0.0,
-                 config.closing_seconds, config.hold_seconds);
-  PREGRASP_CHECK(grasp.feasible());
-  const RigidTransform X_WO = state.bodies.front().X_WB();
-  const MatrixX3 f_O = ChooseForces(grasp_world, grasp, X_WO.linear(), config.friction_reserve);
-  Lifter lifter(world, state, config);
-  lifter.Grasp(grasp, f_O);
-  lifter.Lift(config.height * direction_W);
+bool WithstandsMore(const LiftResult& a, const LiftResult& b) {
+  const auto rank = [](const LiftResult& lift) {
+    return std::tuple(lift.held, lift.pushes,
+                      static_cast<int>(lift.soft) + static_cast<int>(lift.stiff));
+  };
+  return rank(a) > rank(b);
+}
 
-  LiftResult result;
-  result.end = lifter.state();
-  result.direction_W = direction_W;
-  const RigidTransform X_WO_end = result.end.bodies.front().X_WB();
-  const Vector3 way = X_WO_end.translation() - X_WO.translation();
-  result.height = way.dot(direction_W);
-  result.shift = (way - config.height * direction_W).norm();
-  result.turn_deg = RadToDeg(RotationAngle(X_WO.linear(), X_WO_end.linear()));
-  for (const FingertipState& tip : result.end.fingers) {
-    if (tip.on) result.slip = std::max(result.slip, tip.slip);
+std::string Explain(const LiftResult& lift, const Scene& scene) {
+  if (lift.held) {
+    return fmt::format(
+        "lifted {:.0f} mm, at most {:.1f} mm and {:.1f} degrees off; {} of {} pushes held; {}with "
+        "fingers of {:.0f} N/m, {}with {:.0f} N/m",
+        1e3 * lift.height, 1e3 * lift.shift, lift.turn_deg, lift.pushes, kNumPushes,
+        lift.soft ? "" : "not ", kSoftStiffness, lift.stiff ? "" : "not ", kStiffStiffness);
   }
-  result.held = result.shift <= config.max_shift && result.turn_deg <= config.max_turn_deg;
-  return result;
+  std::string text = "not lifted: ";
+  for (const LiftReason reason : lift.reasons) {
+    if (reason != lift.reasons.front()) text += "; ";
+    text += ExplainReason(lift, reason, scene);
+  }
+  return text;
 }
 
 }  // namespace pregrasp

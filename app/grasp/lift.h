@@ -1,44 +1,57 @@
 #pragma once
 
-#include "app/dynamics/world.h"
-#include "app/geometry/point_cloud.h"
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "app/grasp/feasible_grasp.h"
+#include "app/grasp/lift_simulation.h"
 
 namespace pregrasp {
 
-struct LiftConfig {
-  double height = 0.10;          ///< along the lift's direction [m]
-  double closing_seconds = 0.6;  ///< in which the grasp's forces rise
-  double lift_seconds = 1.2;
-  double hold_seconds = 0.5;
-  double friction_reserve = 0.6;  ///< forces are chosen inside this share of the friction cone
-  double max_shift = 0.01;        ///< the object may lag behind by this much [m]
-  double max_turn_deg = 15.0;     ///< and turn by this much [degrees]
-};
-
-/// The design's "lift": closing the grasp and moving the object, with targets under the same spring
-/// law as everything else.
-struct LiftResult {
+/// The design's "lift" of a feasible grasp: whether the hand picks the object up, and what the
+/// grasp withstands at the top. Of the simulation at the full step, through Simbody.
+struct LiftResult : LiftOutcome {
   bool held = false;
-  Vector3 direction_W = Vector3::UnitZ();
-  double height = 0.0;    ///< how far the object came along it [m]
-  double shift = 0.0;     ///< from where it should be [m]
-  double turn_deg = 0.0;  ///< [degrees]
-  double slip = 0.0;      ///< the farthest that a fingertip slid [m]
-  WorldState end;
+  std::vector<LiftReason> reasons;  ///< empty if held
+  LiftWay way;
+  LiftGrip grip;
+  /// What the forces were chosen by; absent if the way is not free or nothing balances the weight.
+  std::optional<GraspForces> forces;
+  bool simulated = false;  ///< otherwise the outcome is that of no step
+
+  /// Of the six pushes of half the object's weight along +-x, +-y, +-z of the object for 0.3 s,
+  /// those that it withstands: half a second later it is within 1 cm and 15 degrees of where it
+  /// was, and fingers alone hold it. 0 unless held.
+  int pushes = 0;
+  /// Whether the whole lift, forces and all, holds with fingers of 150 and of 600 N/m. False unless
+  /// held.
+  bool soft = false, stiff = false;
 };
 
-/// The direction nearest to up in which the object can move by `height` without meeting the
-/// surroundings (up, then rings of directions at 15, 30, .. 90 degrees; ties by azimuth).
-Vector3 FindLiftDirection(const World& world, const WorldState& state, const PointCloud& cloud,
-                          const EnvironmentDistance& environment, double height);
+inline constexpr double kSoftStiffness = 150.0, kStiffStiffness = 600.0;  // [N/m]
+inline constexpr int kNumPushes = 6;
 
-/// Lifts a feasible grasp from `state`, in which some fingers may press already: those keep contact
-/// and target until the grasp's own forces have taken over. The springs are soft: forces above
-/// stiffness times the object's half width turn it over, whatever the hand's own stiffness would do
-/// (design: lift is reported as it is).
-LiftResult SimulateLift(const World& world, const WorldState& state, const GraspWorld& grasp_world,
-                        const GraspResult& grasp, const Vector3& direction_W,
-                        const LiftConfig& config);
+/// The worlds of a lift: the same scene at the full step and at half of it.
+struct LiftWorlds {
+  const World& full;
+  const World& half;
+  const GraspWorld& grasp;
+};
+
+/// Lifts a feasible grasp from `state`, the certified end, in which some fingers may press
+/// already. In turn, the first that fails is the reason: the way; forces for the grasp to hold with
+/// (ChooseGraspForces) at which its stiffness is positive definite with a margin; the simulation;
+/// the same at half the step.
+/// @param way  FindLiftWay of the state, the same for all grasps.
+LiftResult LiftGrasp(const LiftWorlds& worlds, const WorldState& state, const GraspResult& grasp,
+                     const LiftWay& way, const LiftConfig& config);
+
+/// Whether `a` is to be preferred: it holds; it withstands more pushes; more of soft and stiff.
+/// False where they are alike.
+bool WithstandsMore(const LiftResult& a, const LiftResult& b);
+
+/// One sentence for a person: what it withstands, or what stands in the way.
+std::string Explain(const LiftResult& lift, const Scene& scene);
 
 }  // namespace pregrasp

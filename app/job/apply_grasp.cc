@@ -72,37 +72,62 @@ void TakeGrasp(Application& a) {
   a.facts.details = MakeGraspFacts(a.next, number);
 }
 
-void LiftGrasp(Application& a) {
+LiftFacts MakeLiftFacts(const Application& a, int number, const LiftResult& lift) {
+  LiftFacts facts;
+  facts.path = a.next.path->rank;
+  facts.grasp = number;
+  facts.held = lift.held;
+  for (const LiftReason reason : lift.reasons) facts.reasons.emplace_back(LiftReasonName(reason));
+  facts.sentence = Explain(lift, a.job.scene());
+  facts.height_m = lift.height;
+  facts.shift_mm = 1e3 * lift.shift;
+  facts.turn_deg = lift.turn_deg;
+  facts.slip_mm = 1e3 * lift.slip;
+  facts.direction_W = lift.way.direction_W;
+  facts.pushes = lift.pushes;
+  facts.soft = lift.soft;
+  facts.stiff = lift.stiff;
+  for (std::size_t i = 0; i < lift.grip.contacts.size(); ++i) {
+    const GraspContact& contact = lift.grip.contacts[i];
+    facts.grip.push_back({contact.finger, contact.p_OC, contact.nhat_O,
+                          lift.grip.forces_O.row(static_cast<Eigen::Index>(i)).transpose()});
+  }
+  facts.neighbour_moved_mm = 1e3 * lift.neighbour_moved;
+  facts.neighbour_turned_deg = lift.neighbour_turned_deg;
+  facts.hand =
+      MakeHandFacts(a.next.grasps->grasps[number - 1].result.kinematics->ik.configuration());
+  return facts;
+}
+
+void SimulateLiftOf(Application& a) {
   a.next.ForgetMotion();
   const int number = CommandOptions(a.command).Int("grasp");
   Require(a.next.grasps && number >= 1 && number <= a.next.num_grasps, "the number of a grasp",
           "another");
   const CompletedGrasp& grasp = a.next.grasps->grasps[number - 1];
   Require(grasp.feasible(), "a feasible grasp", "one that is not");
-  const Planner planner = a.next.planner->WithConfig(a.next.config);
-  const auto lift =
-      std::make_shared<const LiftResult>(planner.Lift(*a.next.certificate, grasp.result));
-  a.next.lifts[number] = lift;
+  if (!a.next.prepared_lifts || a.command.options.contains("settings")) {
+    const Planner planner = a.next.planner->WithConfig(a.next.config);
+    a.next.prepared_lifts = std::make_shared<const std::vector<std::optional<LiftResult>>>(
+        planner.LiftGrasps(*a.next.certificate, *a.next.grasps));
+  }
+  const LiftResult& lift = *a.next.prepared_lifts->at(number - 1);
+  a.next.lifts[number] = std::shared_ptr<const LiftResult>(a.next.prepared_lifts, &lift);
   a.facts.id = fmt::format("path.{}.lift.{}", a.next.path->rank, number);
-  SetWorldFacts(a.facts, a.job.world(), lift->end, {});
-  LiftFacts facts;
-  facts.path = a.next.path->rank;
-  facts.grasp = number;
-  facts.held = lift->held;
-  facts.height_m = lift->height;
-  facts.shift_mm = 1e3 * lift->shift;
-  facts.turn_deg = lift->turn_deg;
-  facts.slip_mm = 1e3 * lift->slip;
-  facts.direction_W = lift->direction_W;
-  facts.hand = MakeHandFacts(grasp.result.kinematics->ik.configuration());
-  a.facts.details = std::move(facts);
+  if (lift.simulated) {
+    const TraceRow& last = lift.trace.back();
+    SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
+  } else {
+    SetEndOfTrajectory(a);
+  }
+  a.facts.details = MakeLiftFacts(a, number, lift);
 }
 
 }  // namespace
 
 void ApplyGrasp(Application& a) {
   if (a.command.verb == Verb::kGrasp) TakeGrasp(a);
-  if (a.command.verb == Verb::kLift) LiftGrasp(a);
+  if (a.command.verb == Verb::kLift) SimulateLiftOf(a);
 }
 
 }  // namespace pregrasp::internal

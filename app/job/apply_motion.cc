@@ -62,11 +62,12 @@ void SetFrameFacts(Application& a, int frame) {
 void Begin(Application& a) {
   const int number = CommandOptions(a.command).Int("grasp");
   const auto lift = a.next.lifts.find(number);
-  Require(lift != a.next.lifts.end(), "a grasp whose lift was simulated", "another");
+  Require(lift != a.next.lifts.end() && lift->second->simulated, "a grasp whose lift was simulated",
+          "another");
   const Planner planner = a.next.planner->WithConfig(a.next.config);
   const auto motion = std::make_shared<const HandMotion>(
       planner.MakeMotion(*a.next.certificate, a.next.grasps->grasps[number - 1].result,
-                         lift->second->direction_W, a.next.config.motion));
+                         lift->second->way.direction_W, a.next.config.motion));
   a.next.chosen_grasp = number;
   a.next.motion = motion;
   a.next.motion_state = std::make_shared<const MotionState>(motion->Start());

@@ -24,6 +24,7 @@ void JobState::ForgetTrajectory() {
 void JobState::ForgetGrasps() {
   grasps.reset();
   num_grasps = 0;
+  prepared_lifts.reset();
   lifts.clear();
   ForgetMotion();
 }

@@ -33,6 +33,8 @@ struct JobState {
   std::shared_ptr<const ReleaseResult> release;
   std::shared_ptr<const GraspSet> grasps;  ///< all samples, of which `num_grasps` have been a step
   int num_grasps = 0;
+  /// Of all feasible samples, those that have been a step in `lifts`.
+  std::shared_ptr<const std::vector<std::optional<LiftResult>>> prepared_lifts;
   std::map<int, std::shared_ptr<const LiftResult>> lifts;  ///< by number of the grasp, from 1
 
   int chosen_grasp = 0;                      ///< that `motion` ends in, from 1

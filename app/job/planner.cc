@@ -177,21 +177,13 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   const EncodedState encoded = generator_->Encode(*generator_structure_, seen);
   const int count = config_.grasp_samples;
   set.grasps.resize(count);
-  set.lifts.resize(count);
   pool_.ParallelFor(count, [&](int sample, int) {
     ThrowIfInterrupted();
     set.grasps[sample] = CompleteGrasp(encoded, X_WB, release, path_rank, sample);
   });
   for (int sample = 0; sample < count; ++sample) {
-    ThrowIfInterrupted();
-    if (!set.grasps[sample].feasible()) continue;
-    set.lifts[sample] = Lift(certificate, set.grasps[sample].result);
-    set.feasible.push_back(sample);
+    if (set.grasps[sample].feasible()) set.feasible.push_back(sample);
   }
-  std::stable_sort(set.feasible.begin(), set.feasible.end(), [&](int a, int b) {
-    if (set.lifts[a]->held != set.lifts[b]->held) return set.lifts[a]->held;
-    return set.grasps[a].result.wrench->margin > set.grasps[b].result.wrench->margin;
-  });
   return set;
 }
 
@@ -211,11 +203,20 @@ CompletedGrasp Planner::CompleteGrasp(const EncodedState& encoded,
                                  completion);
 }
 
-LiftResult Planner::Lift(const Certificate& certificate, const GraspResult& grasp) const {
-  const WorldState& state = certificate.full.end;
-  const Vector3 direction_W =
-      FindLiftDirection(*world_, state, scorer_->cloud(), *environment_, config_.lift.height);
-  return SimulateLift(*world_, state, *grasp_world_, grasp, direction_W, config_.lift);
+std::vector<std::optional<LiftResult>> Planner::LiftGrasps(const Certificate& certificate,
+                                                           const GraspSet& grasps) const {
+  std::vector<std::optional<LiftResult>> lifts(grasps.grasps.size());
+  if (grasps.feasible.empty()) return lifts;
+  const WorldState& end = certificate.full.end;
+  const LiftWay way = FindLiftWay(world_->GetPoses(end), scorer_->cloud(), *environment_,
+                                  -scene().gravity.normalized(), config_.lift.way);
+  pool_.ParallelFor(static_cast<int>(grasps.feasible.size()), [&](int i, int) {
+    ThrowIfInterrupted();
+    const int sample = grasps.feasible[i];
+    lifts[sample] = LiftGrasp({*world_, *half_world_, *grasp_world_}, end,
+                              grasps.grasps[sample].result, way, config_.lift);
+  });
+  return lifts;
 }
 
 HandMotion Planner::MakeMotion(const Certificate& certificate, const GraspResult& grasp,

@@ -48,13 +48,10 @@ struct ReleaseResult : Released {
   std::vector<Placement> conditions;
 };
 
-/// The generated grasps of a certified trajectory, tested; those that are feasible, lifted.
+/// The generated grasps of a certified trajectory, tested.
 struct GraspSet {
-  std::vector<CompletedGrasp> grasps;            ///< by sample
-  std::vector<std::optional<LiftResult>> lifts;  ///< by sample
-  /// Samples of the feasible ones, the most promising first: those that lift the object, then those
-  /// with more room in their forces.
-  std::vector<int> feasible;
+  std::vector<CompletedGrasp> grasps;  ///< by sample
+  std::vector<int> feasible;           ///< samples of the feasible ones, ascending
 
   /// Share that is feasible, with refinement and without; 0 of none.
   double r_suc() const;
@@ -107,7 +104,9 @@ class Planner {
   GraspSet CompleteGrasps(const Certificate& certificate, const ReleaseResult& release,
                           int path_rank) const;
 
-  LiftResult Lift(const Certificate& certificate, const GraspResult& grasp) const;
+  /// The simulated lifts of the feasible ones, by sample; none for the others. @throws Interrupted.
+  std::vector<std::optional<LiftResult>> LiftGrasps(const Certificate& certificate,
+                                                    const GraspSet& grasps) const;
 
   /// @param direction_W  of the lift.
   HandMotion MakeMotion(const Certificate& certificate, const GraspResult& grasp,

@@ -132,7 +132,11 @@ class Runner {
     }
     const std::string share = fmt::format("{} of {} grasps are feasible", end.progress.feasible,
                                           state->grasps->grasps.size());
-    if (end.progress.lifted == 0) return head + share + ", but none lifts the object";
+    if (end.progress.lifted == 0) {
+      const int first = OrderGrasps(*state).front();
+      return head + share + fmt::format(", none lifts; number {}: ", first) +
+             pregrasp::Explain(*state->lifts.at(first), timeline_.job().scene());
+    }
     const std::string lifted = share + fmt::format(", {} of them lift", end.progress.lifted);
     if (end.progress.reached != Progress::Reached::kMoved) {
       return head + lifted +
@@ -189,8 +193,10 @@ std::vector<int> OrderGrasps(const JobState& state) {
   std::vector<int> order;
   for (const auto& [number, lift] : state.lifts) order.push_back(number);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    const bool a_held = state.lifts.at(a)->held, b_held = state.lifts.at(b)->held;
-    if (a_held != b_held) return a_held;
+    const LiftResult &lift_a = *state.lifts.at(a), &lift_b = *state.lifts.at(b);
+    if (WithstandsMore(lift_a, lift_b) || WithstandsMore(lift_b, lift_a)) {
+      return WithstandsMore(lift_a, lift_b);
+    }
     return state.grasps->grasps[a - 1].result.wrench->margin >
            state.grasps->grasps[b - 1].result.wrench->margin;
   });

@@ -119,6 +119,13 @@ void FillChosen(const Timeline& timeline, const JobState& state, RunSummary& sum
   summary.lift.height_m = lift.height;
   summary.lift.slip_mm = 1e3 * lift.slip;
   summary.lift.turn_deg = lift.turn_deg;
+  summary.lift.pushes = lift.pushes;
+  summary.lift.soft = lift.soft;
+  summary.lift.stiff = lift.stiff;
+  if (timeline.job().world().num_movables() > 1) {
+    summary.neighbours.moved_mm = 1e3 * lift.neighbour_moved;
+    summary.neighbours.turned_deg = lift.neighbour_turned_deg;
+  }
 }
 
 void FillMotion(const JobState& state, RunSummary& summary) {

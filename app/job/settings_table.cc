@@ -219,8 +219,13 @@ Settings GraspsSettings() {
 Settings LiftSettings() {
   const char* held = "a lifted object follows for 0.1 m within 0.01 m and 15 deg, and stays";
   return {
-      {"lift.height", Real(0.01, 1.0, "m"), "along the lift's direction", FIELD(lift.height),
+      {"lift.height", Real(0.01, 1.0, "m"), "along the lift's direction", FIELD(lift.way.height),
        AtLeast(0.10, held)},
+      {"lift.handover_seconds",
+       Real(0.0, 10.0, "s"),
+       "in which fingers that leave their contacts let go",
+       FIELD(lift.handover_seconds),
+       {}},
       {"lift.closing_seconds",
        Real(0.0, 10.0, "s"),
        "in which the grasp's forces rise",
@@ -236,12 +241,8 @@ Settings LiftSettings() {
       {"lift.friction_reserve",
        Real(0.01, 1.0),
        "share of the friction cone that forces are chosen in",
-       FIELD(lift.friction_reserve),
+       FIELD(lift.forces.friction_reserve),
        {}},
-      {"lift.max_shift", Real(0.0, 1.0, "m"), "the object may lag behind by this",
-       FIELD(lift.max_shift), AtMost(0.01, held)},
-      {"lift.max_turn_deg", Real(0.0, 180.0, "deg"), "the object may turn by this",
-       FIELD(lift.max_turn_deg), AtMost(15.0, held)},
   };
 }
 

@@ -457,12 +457,18 @@ struct GraspFacts {
   }
 };
 
+/// As LiftResult.
 struct LiftFacts {
   int path = 0, grasp = 0;
   bool held = false;
-  std::vector<std::string> reasons;
+  std::vector<std::string> reasons;  ///< why not, by name
+  std::string sentence;
   double height_m = 0.0, shift_mm = 0.0, turn_deg = 0.0, slip_mm = 0.0;
   Vector3 direction_W = Vector3::UnitZ();
+  int pushes = 0;  ///< of six, withstood
+  bool soft = false, stiff = false;
+  std::vector<GraspContactFacts> grip;  ///< with the forces it holds by
+  double neighbour_moved_mm = 0.0, neighbour_turned_deg = 0.0;
   HandFacts hand;  ///< at the grasp
 
   template <typename Self, typename Visit>
@@ -471,11 +477,18 @@ struct LiftFacts {
     visit("grasp", self.grasp);
     visit("held", self.held);
     visit("reasons", self.reasons);
+    visit("sentence", self.sentence);
     visit("height_m", self.height_m);
     visit("shift_mm", self.shift_mm);
     visit("turn_deg", self.turn_deg);
     visit("slip_mm", self.slip_mm);
     visit("direction_W", self.direction_W);
+    visit("pushes", self.pushes);
+    visit("soft", self.soft);
+    visit("stiff", self.stiff);
+    visit("grip", self.grip);
+    visit("neighbour_moved_mm", self.neighbour_moved_mm);
+    visit("neighbour_turned_deg", self.neighbour_turned_deg);
     visit("hand", self.hand);
   }
 };

@@ -173,15 +173,17 @@ Lines Describe(const Scene& /*scene*/, const GraspFacts& facts) {
   return lines;
 }
 
-Lines Describe(const Scene& scene, const LiftFacts& facts) {
-  const std::string& name = scene.object().name;
-  Lines lines = {facts.held
-                     ? fmt::format("The grasp closes and lifts the {}, which follows.", name)
-                     : fmt::format("The lift of the {} fails{}.", name,
-                                   facts.reasons.empty() ? "" : ": " + Join(facts.reasons, "; "))};
+Lines Describe(const Scene& /*scene*/, const LiftFacts& facts) {
+  Lines lines = {facts.sentence};
   lines.push_back(fmt::format("came\t{:.1f} mm", 1e3 * facts.height_m));
-  lines.push_back(fmt::format("lags\t{:.1f} mm, {:.1f} deg", facts.shift_mm, facts.turn_deg));
+  lines.push_back(fmt::format("off its way\t{:.1f} mm, {:.1f} deg at most", facts.shift_mm,
+                              facts.turn_deg));
   lines.push_back(fmt::format("fingertips slid\t{:.1f} mm", facts.slip_mm));
+  if (facts.held) {
+    lines.push_back(fmt::format("pushes withstood\t{} of 6", facts.pushes));
+    lines.push_back(fmt::format("softer, stiffer hand\t{}, {}", facts.soft ? "holds" : "drops it",
+                                facts.stiff ? "holds" : "drops it"));
+  }
   return lines;
 }
 

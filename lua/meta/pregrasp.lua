@@ -631,13 +631,17 @@ function Grasp:motion(options) end
 function Grasp:shot(options) end
 
 ---@class Lift
----@field held boolean the object follows within 10 mm and 15 degrees
----@field height number how far it came [m]
----@field reasons string[] why it is not held, a sentence each
----@field shift_mm number from where it should be
----@field turn_deg number
+---@field held boolean the object follows within 10 mm and 15 degrees, and fingers alone hold it at the end
+---@field reasons string[] why it is not held: "gives_way", "does_not_follow", ..; empty if it is
+---@field text string a sentence: what it withstands, or what stands in the way
+---@field height number how far it came along the way [m]
+---@field shift_mm number the farthest it was from where it should be
+---@field turn_deg number the most that it turned
 ---@field slip_mm number the farthest that a fingertip slid
----@field direction_W Vector3 nearest to up in which it can leave
+---@field direction_W Vector3 of the way: nearest to up in which it can leave
+---@field pushes integer of six pushes with half the weight at the top, those that it withstands
+---@field soft boolean whether the lift holds with fingers of 150 N/m too
+---@field stiff boolean and with 600 N/m
 ---@field step_id string
 
 ---@class Motion

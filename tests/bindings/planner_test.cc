@@ -205,17 +205,18 @@ const char* const kCube = R"(
 
 TEST_F(PlannerScriptTest, AFeasibleGraspHasForcesAPoseAndALift) {
   EXPECT_EQ(Script(kCube + std::string(R"(
-    print(gr.count, gr.num_feasible >= 1, gr.r_suc == gr.num_feasible / 4)
+    print(gr.count, gr.num_feasible >= 1, gr.r_suc == gr.num_feasible / 4, gr.r_lift <= gr.r_suc)
     local best = gr:best()
     print(best.feasible, best.wrench.feasible, best.ik.solved, #best.wrench.forces == #best.contacts, best.ik.tip_error < 2e-3)
     print(type(best.lift.held), best.lift.direction_W[3] > 0.5, best.moved_mm <= 50)
     for _, x in gr:all() do if x.feasible then
       assert(x.lift.held == best.lift.held or best.lift.held)
-      assert(x.lift.held ~= best.lift.held or x.wrench.margin <= best.wrench.margin)
+      assert(x.lift.held ~= best.lift.held or x.lift.pushes <= best.lift.pushes)
+      assert(x.lift.held == (#x.lift.reasons == 0) and #x.lift.text > 0)
     else
       assert(x.lift == nil and not pcall(x.motion, x))
     end end)")),
-            "4\ttrue\ttrue\ntrue\ttrue\ttrue\ttrue\ttrue\nboolean\ttrue\ttrue\n");
+            "4\ttrue\ttrue\ttrue\ntrue\ttrue\ttrue\ttrue\ttrue\nboolean\ttrue\ttrue\n");
 }
 
 TEST_F(PlannerScriptTest, AHandMotionIsSolvedKeyByKeyAndFrameByFrame) {
