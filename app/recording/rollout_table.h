@@ -9,11 +9,18 @@ namespace pregrasp {
 
 /// The first line of rollout.csv, with its line break: t, then for the object p_WO_*, q_WO_*
 /// (w, x, y, z), w_WO_* and v_WO_*, then the same prefixed NAME_ for each other movable body in
-/// scene order, then for each planning finger FINGER_on (0 or 1), FINGER_p_OC_*, FINGER_target_W_*
-/// and FINGER_f_W_*. SI units; numbers are the shortest text that reads back as the same double.
+/// scene order, then for each planning finger FINGER_on (0 or 1), FINGER_p_OC_*, FINGER_n_OC_* (the
+/// outward normal there, in the object's frame), FINGER_target_W_* and FINGER_f_W_* (on the
+/// object). SI units; numbers are the shortest text that reads back as the same double.
 std::string RolloutHeader(const Scene& scene);
 
 /// One line of it.
 std::string RolloutRow(const WorldState& state);
+
+/// The same for lift.csv, of all five fingers, each with FINGER_k and FINGER_b behind the others:
+/// stiffness [N/m] and damping [N s/m] of its spring. Of a finger that is off, all are 0 but for
+/// the z of the normal.
+std::string LiftHeader(const Scene& scene);
+std::string LiftRow(const WorldState& state);
 
 }  // namespace pregrasp

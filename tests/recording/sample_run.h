@@ -118,7 +118,10 @@ inline WorldState SampleState(int i, std::uint64_t seed = 1) {
   for (FingertipState& finger : state.fingers) {
     finger.on = i % 2 == 1;
     finger.p_OC = RandomVector(rng);
+    finger.nhat_O = RandomVector(rng).normalized();
     finger.p_WTarget = RandomVector(rng);
+    finger.stiffness = 50.0 + i;
+    finger.damping = 1.0 / (3.0 + i);
     finger.f_W = RandomVector(rng);
   }
   return state;

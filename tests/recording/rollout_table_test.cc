@@ -1,0 +1,67 @@
+#include "app/recording/rollout_table.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "tests/recording/sample_run.h"
+
+namespace pregrasp {
+namespace {
+
+std::vector<std::string> Split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line.substr(0, line.size() - 1));
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+// A row by the names of the header.
+std::map<std::string, double> ReadRow(const std::string& header, const std::string& row) {
+  const std::vector<std::string> names = Split(header), cells = Split(row);
+  EXPECT_EQ(names.size(), cells.size());
+  std::map<std::string, double> values;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_TRUE(values.emplace(names[i], std::strtod(cells.at(i).c_str(), nullptr)).second);
+  }
+  return values;
+}
+
+Vector3 VectorOf(const std::map<std::string, double>& row, const std::string& stem) {
+  return {row.at(stem + "_x"), row.at(stem + "_y"), row.at(stem + "_z")};
+}
+
+TEST(RolloutTableTest, TheLiftsTableHasAllFiveFingersWithTheirSpringsToTheLastBit) {
+  const std::string header = LiftHeader(SampleScene());
+  for (int i = 0; i < 6; ++i) {
+    const WorldState state = SampleState(i);
+    const auto row = ReadRow(header, LiftRow(state));
+    EXPECT_EQ(row.at("t"), state.t);
+    EXPECT_EQ(VectorOf(row, "p_WO"), state.bodies[0].p_WB);
+    EXPECT_EQ(row.at("q_WO_w"), state.bodies[0].q_WB.w());
+    for (int f = 0; f < kNumFingers; ++f) {
+      const std::string name = kFingerNames[f];
+      const FingertipState& tip = state.fingers[f];
+      EXPECT_EQ(row.at(name + "_on"), tip.on ? 1.0 : 0.0);
+      EXPECT_EQ(VectorOf(row, name + "_p_OC"), tip.p_OC);
+      EXPECT_EQ(VectorOf(row, name + "_n_OC"), tip.nhat_O);
+      EXPECT_EQ(VectorOf(row, name + "_target_W"), tip.p_WTarget);
+      EXPECT_EQ(VectorOf(row, name + "_f_W"), tip.f_W);
+      EXPECT_EQ(row.at(name + "_k"), tip.stiffness);
+      EXPECT_EQ(row.at(name + "_b"), tip.damping);
+    }
+  }
+}
+
+TEST(RolloutTableTest, TheRolloutsTableHasTheLiftsColumnsOfThumbAndIndexButForTheirSprings) {
+  const WorldState state = SampleState(3);
+  const auto rollout = ReadRow(RolloutHeader(SampleScene()), RolloutRow(state));
+  const auto lift = ReadRow(LiftHeader(SampleScene()), LiftRow(state));
+  for (const auto& [name, value] : rollout) EXPECT_EQ(lift.at(name), value) << name;
+  EXPECT_EQ(lift.size() - rollout.size(), 3U * 15U + 2U * 2U);
+}
+
+}  // namespace
+}  // namespace pregrasp
