@@ -1,0 +1,87 @@
+#include "app/trajectory/robust.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/core/check.h"
+
+namespace pregrasp {
+namespace {
+
+// From the nominal end (design, section 4).
+constexpr double kMaxShift = 0.02;  // [m]
+constexpr double kMaxTurnDeg = 10.0;
+
+void ScaleFriction(Scene& scene, double factor) {
+  for (Body& body : scene.bodies) body.friction *= factor;
+}
+
+void ScaleMass(Scene& scene, double factor) {
+  MassProperties& mass = *scene.object().mass_properties;
+  mass.mass *= factor;
+  mass.I_BBcm *= factor;
+}
+
+bool Holds(const PlanOutcome& outcome, const CertifyConfig& config) {
+  if (outcome.diverged) return false;
+  double shift = 0.0, turn_deg = 0.0;
+  CalcShift(outcome.hold_start, outcome.end, &shift, &turn_deg);
+  return shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg;
+}
+
+}  // namespace
+
+const char* RobustChangeName(RobustChange change) {
+  constexpr const char* kNames[kNumRobustChanges] = {"friction x 0.75", "friction x 1.25",
+                                                     "mass x 0.7", "mass x 1.3"};
+  return kNames[static_cast<int>(change)];
+}
+
+Scene ChangeScene(const Scene& scene, RobustChange change) {
+  Scene changed = scene;
+  switch (change) {
+    case RobustChange::kLessFriction:
+      ScaleFriction(changed, 0.75);
+      break;
+    case RobustChange::kMoreFriction:
+      ScaleFriction(changed, 1.25);
+      break;
+    case RobustChange::kLighter:
+      ScaleMass(changed, 0.7);
+      break;
+    case RobustChange::kHeavier:
+      ScaleMass(changed, 1.3);
+      break;
+  }
+  return changed;
+}
+
+RobustWorlds::RobustWorlds(const Scene& scene, const StepConfig& config) {
+  for (int i = 0; i < kNumRobustChanges; ++i) {
+    worlds_.emplace_back(ChangeScene(scene, static_cast<RobustChange>(i)), config);
+  }
+}
+
+RobustResult RobustWorlds::Test(const EnvironmentDistance& environment, const WorldState& start,
+                                const WorldPlan& plan, PlanTiming timing,
+                                const CertifyConfig& config, const WorldState& nominal_end) const {
+  timing.hold_seconds = config.hold_seconds;
+  RobustResult result;
+  for (std::size_t i = 0; i < worlds_.size(); ++i) {
+    const PlanOutcome run =
+        SimulatePlan(worlds_[i], environment, start, plan, timing, Stepper::kKernel);
+    RobustOutcome outcome;
+    outcome.change = static_cast<RobustChange>(i);
+    CalcShift(nominal_end, run.end, &outcome.shift, &outcome.turn_deg);
+    PREGRASP_CHECK(std::isfinite(outcome.shift) && std::isfinite(outcome.turn_deg));
+    outcome.held =
+        Holds(run, config) && outcome.shift <= kMaxShift && outcome.turn_deg <= kMaxTurnDeg;
+    result.held += outcome.held;
+    result.worst_shift = std::max(result.worst_shift, outcome.shift);
+    result.worst_turn_deg = std::max(result.worst_turn_deg, outcome.turn_deg);
+    result.outcomes.push_back(outcome);
+  }
+  return result;
+}
+
+}  // namespace pregrasp
