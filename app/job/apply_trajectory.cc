@@ -130,6 +130,19 @@ CertifyFacts MakeCertifyFacts(const JobState& state) {
   return facts;
 }
 
+RobustFacts MakeRobustFacts(Application& a) {
+  const PlanOutcome& nominal = a.next.certificate->full;
+  const RobustResult result = a.job.robust_worlds().Test(
+      a.next.planner->environment(), a.next.start, nominal.plan, a.next.mppi->config().timing,
+      a.next.config.certify, nominal.end);
+  RobustFacts facts{static_cast<int>(result.outcomes.size()), result.held,
+                    1e3 * result.worst_shift, result.worst_turn_deg, {}};
+  for (const RobustOutcome& outcome : result.outcomes) {
+    if (!outcome.held) facts.elsewhere.emplace_back(RobustChangeName(outcome.change));
+  }
+  return facts;
+}
+
 void CertifyBest(Application& a) {
   Require(a.next.optimization && a.next.optimization->iteration > 0, "at least one step()", "none");
   a.next.ForgetTrajectory();
@@ -142,7 +155,9 @@ void CertifyBest(Application& a) {
   a.facts.id = fmt::format("path.{}.certify", a.next.path->rank);
   const TraceRow& last = certificate->trace.back();
   SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
-  a.facts.details = MakeCertifyFacts(a.next);
+  CertifyFacts facts = MakeCertifyFacts(a.next);
+  if (certificate->certified) facts.robust = MakeRobustFacts(a);
+  a.facts.details = std::move(facts);
 }
 
 }  // namespace

@@ -55,6 +55,11 @@ const EnvironmentDistance& Job::environment() {
   return *environment_;
 }
 
+const RobustWorlds& Job::robust_worlds() {
+  if (!robust_worlds_) robust_worlds_ = std::make_unique<RobustWorlds>(scene(), world_->config());
+  return *robust_worlds_;
+}
+
 std::shared_ptr<const Planner> Job::GetPlanner(const WorldState& start,
                                                const PlannerConfig& config) {
   if (!planner_ || !SamePoses(planner_->start(), start) || !SameBase(planner_->config(), config)) {

@@ -7,6 +7,7 @@
 #include "app/core/thread_pool.h"
 #include "app/geometry/signed_distance.h"
 #include "app/job/planner.h"
+#include "app/trajectory/robust.h"
 
 namespace pregrasp {
 
@@ -35,6 +36,9 @@ class Job {
   /// Signed distance to everything around the object, at the scene's start.
   const EnvironmentDistance& environment();
 
+  /// The worlds in which certified plans are simulated again.
+  const RobustWorlds& robust_worlds();
+
   /// The stages bound together for plans from `start`. The last one made is kept.
   /// @throws InputError for weights that are missing or damaged.
   std::shared_ptr<const Planner> GetPlanner(const WorldState& start, const PlannerConfig& config);
@@ -45,6 +49,7 @@ class Job {
   std::shared_ptr<const World> world_;
   std::unique_ptr<ThreadPool> pool_;
   std::unique_ptr<EnvironmentDistance> environment_;
+  std::unique_ptr<RobustWorlds> robust_worlds_;
   std::shared_ptr<const Planner> planner_;
 };
 

@@ -59,6 +59,12 @@ void FillTrajectory(const JobState& state, const Node& node, RunSummary& summary
   }
   const auto& facts = std::get<CertifyFacts>(certified->facts.details);
   summary.physics.max_penetration_mm = facts.max_penetration_mm;
+  if (facts.robust) {
+    summary.robust.worlds = facts.robust->worlds;
+    summary.robust.held = facts.robust->held;
+    summary.robust.worst_shift_mm = facts.robust->worst_shift_mm;
+    summary.robust.worst_turn_deg = facts.robust->worst_turn_deg;
+  }
   summary.contacts.emplace();
   int switches = 0;
   for (std::size_t i = 0; i < facts.stages.size(); ++i) {

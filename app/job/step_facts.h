@@ -364,6 +364,22 @@ struct IterationFacts {
   }
 };
 
+/// As RobustResult: how a certified plan ends in changed worlds.
+struct RobustFacts {
+  int worlds = 0, held = 0;
+  double worst_shift_mm = 0.0, worst_turn_deg = 0.0;
+  std::vector<std::string> elsewhere;  ///< the changes with which it does not hold
+
+  template <typename Self, typename Visit>
+  static void VisitFields(Self& self, Visit&& visit) {
+    visit("worlds", self.worlds);
+    visit("held", self.held);
+    visit("worst_shift_mm", self.worst_shift_mm);
+    visit("worst_turn_deg", self.worst_turn_deg);
+    visit("elsewhere", self.elsewhere);
+  }
+};
+
 struct CertifyFacts {
   int path = 0;
   bool certified = false;
@@ -377,6 +393,7 @@ struct CertifyFacts {
   double max_speed = 0.0, max_force_N = 0.0, max_penetration_mm = 0.0, max_tip_overlap_mm = 0.0;
   double unconverged_seconds = 0.0;  ///< in steps that the contact solver left unfinished
   double unresolved_mm = 0.0;        ///< the overlap that these leave, summed
+  std::optional<RobustFacts> robust;  ///< of certified plans
   std::vector<PlaceFacts> pressing;
   std::vector<StageFacts> stages;
 
@@ -400,6 +417,7 @@ struct CertifyFacts {
     visit("max_tip_overlap_mm", self.max_tip_overlap_mm);
     visit("unconverged_seconds", self.unconverged_seconds);
     visit("unresolved_mm", self.unresolved_mm);
+    visit("robust", self.robust);
     visit("pressing", self.pressing);
     visit("stages", self.stages);
   }

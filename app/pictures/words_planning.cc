@@ -155,6 +155,10 @@ Lines Describe(const Scene& scene, const CertifyFacts& facts) {
   lines.push_back(fmt::format("moves if released\t{:.1f} mm, {:.1f} deg", facts.released_shift_mm,
                               facts.released_turn_deg));
   lines.push_back(fmt::format("largest force\t{:.2f} N", facts.max_force_N));
+  if (facts.robust) {
+    lines.push_back(fmt::format("in changed worlds\t{} of {} end alike", facts.robust->held,
+                                facts.robust->worlds));
+  }
   return lines;
 }
 

@@ -5,9 +5,11 @@
 #include "app/core/check.h"
 #include "app/core/json_text.h"
 #include "app/job/planner_settings.h"
+#include "app/job/run_policy.h"
 #include "app/pictures/overlay.h"
 #include "app/recording/checked_file.h"
 #include "app/recording/motion_table.h"
+#include "app/recording/rollout_table.h"
 #include "app/recording/trace_table.h"
 
 namespace pregrasp {
@@ -25,6 +27,14 @@ nlohmann::json ConfigurationAt(const Timeline& timeline, const Timeline::Node& n
                      {"margin", step.margin},
                      {"restitution", step.restitution}};
   return all;
+}
+
+// The simulated lift of the chosen grasp, or of the most promising one; null for none.
+const LiftResult* FindLift(const JobState& state) {
+  int number = state.chosen_grasp;
+  if (number == 0 && !state.lifts.empty()) number = OrderGrasps(state).front();
+  const auto found = state.lifts.find(number);
+  return found == state.lifts.end() || !found->second->simulated ? nullptr : found->second.get();
 }
 
 }  // namespace
@@ -79,6 +89,11 @@ void Recorder::WriteTables(const Timeline::Node& node) {
                               timeline_.job().scene());
     }
     if (!table.empty()) WriteFile(run_.partial() / "trace.jsonl", table);
+  }
+  if (const LiftResult* lift = FindLift(*state)) {
+    std::string table = LiftHeader(timeline_.job().scene());
+    for (const TraceRow& row : lift->trace) table += LiftRow(row.state);
+    WriteFile(run_.partial() / "lift.csv", table);
   }
   if (state->motion && state->motion_state->filled) {
     std::string table = MotionHeader();

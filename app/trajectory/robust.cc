@@ -33,7 +33,7 @@ bool Holds(const PlanOutcome& outcome, const CertifyConfig& config) {
 
 const char* RobustChangeName(RobustChange change) {
   constexpr const char* kNames[kNumRobustChanges] = {"friction x 0.75", "friction x 1.25",
-                                                     "mass x 0.7", "mass x 1.3"};
+                                                     "mass x 0.7", "mass x 1.3", "spread support"};
   return kNames[static_cast<int>(change)];
 }
 
@@ -52,13 +52,18 @@ Scene ChangeScene(const Scene& scene, RobustChange change) {
     case RobustChange::kHeavier:
       ScaleMass(changed, 1.3);
       break;
+    case RobustChange::kSpreadSupport:
+      break;
   }
   return changed;
 }
 
 RobustWorlds::RobustWorlds(const Scene& scene, const StepConfig& config) {
   for (int i = 0; i < kNumRobustChanges; ++i) {
-    worlds_.emplace_back(ChangeScene(scene, static_cast<RobustChange>(i)), config);
+    const auto change = static_cast<RobustChange>(i);
+    StepConfig step = config;
+    step.spread_support = config.spread_support || change == RobustChange::kSpreadSupport;
+    worlds_.emplace_back(ChangeScene(scene, change), step);
   }
 }
 

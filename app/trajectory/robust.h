@@ -13,12 +13,13 @@ enum class RobustChange {
   kMoreFriction,  ///< between bodies, x 1.25
   kLighter,       ///< the object's mass and inertia, x 0.7
   kHeavier,       ///< x 1.3
+  kSpreadSupport,  ///< contacts resist turning like even pressure (StepConfig::spread_support)
 };
-inline constexpr int kNumRobustChanges = 4;
+inline constexpr int kNumRobustChanges = 5;
 /// "friction x 0.75", ..: for logs, scripts and people.
 const char* RobustChangeName(RobustChange change);
 
-/// The scene with one change.
+/// The scene with one change; the same scene where the change is one of the dynamics.
 Scene ChangeScene(const Scene& scene, RobustChange change);
 
 /// What a plan did in one of the worlds.
