@@ -94,8 +94,7 @@ class NodeSampler {
       std::vector<double> scores(begin, begin + config_.samples);
       for (int s = 0; s < config_.samples; ++s) {
         const Placement& placement = placements[index * config_.samples + s];
-        const double gap = (placement.thumb().p_OC - placement.index().p_OC).norm();
-        if (gap < config_.min_tip_distance) scores[s] = 0.0;
+        if (!(CalcTipGap(placement) >= 0.0)) scores[s] = 0.0;
       }
       ClearOccluded(scorer, samples_[0][thumb], indices[index], scores);
       means.push_back(Mean(scores));

@@ -15,8 +15,6 @@ struct ContactGraphConfig {
   int samples = 5;
   /// The paper's M: a node is kept if it is in the top M percent by s_c or by s_n.
   double top_percent = 5.0;
-  /// Two tips closer than this cannot both touch [m]; such placements score 0 (design: 15 mm).
-  double min_tip_distance = 0.015;
 };
 
 /// How far Algorithm 1 of the paper has come on a graph.

@@ -23,6 +23,16 @@ struct Placement {
   const Contact& index() const { return fingers[1]; }
 };
 
+/// How far apart the fingertip spheres of a placement with both fingers on are [m]; below 0 they
+/// overlap.
+inline double CalcTipGap(const Placement& placement) {
+  const auto centre = [&](Finger finger) {
+    const Placement::Contact& contact = placement.fingers[static_cast<int>(finger)];
+    return FingertipCentre(finger, contact.p_OC, contact.nhat_O);
+  };
+  return CalcTipGap(Finger::kThumb, centre(Finger::kThumb), Finger::kIndex, centre(Finger::kIndex));
+}
+
 /// Judges placements in one state of the world: the score function bound to an object cloud and a
 /// signed distance. Implementations are immutable and safe to call from several threads.
 class PlacementScorer {

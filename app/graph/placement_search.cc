@@ -47,9 +47,9 @@ bool AreNear(const Placement& a, const Placement& b, double spacing) {
 }  // namespace
 
 void PlacementSearchConfig::Validate() const {
-  if (!(min_tip_distance >= 0.0 && max_tip_distance > min_tip_distance && spacing >= 0.0)) {
-    throw InputError("", "max_tip_distance", "lengths, this one above min_tip_distance",
-                     FormatDouble(max_tip_distance));
+  if (!(max_tip_distance > 0.0 && spacing >= 0.0)) {
+    throw InputError("", "max_tip_distance", "a length above 0, and no negative spacing",
+                     FormatDouble(std::min(max_tip_distance, spacing)));
   }
 }
 
@@ -83,8 +83,8 @@ std::vector<Placement> FindPlacements(const TriangleMesh& mesh, const SignedDist
   for (int i = 0; pairs && i < config.pairs; ++i) {
     Placement placement;
     placement.fingers = {draw(0), draw(1)};
-    const double gap = (placement.thumb().p_OC - placement.index().p_OC).norm();
-    if (gap >= config.min_tip_distance && gap <= config.max_tip_distance) {
+    const double span = (placement.thumb().p_OC - placement.index().p_OC).norm();
+    if (CalcTipGap(placement) >= 0.0 && span <= config.max_tip_distance) {
       candidates.push_back(placement);
     }
   }

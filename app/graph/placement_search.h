@@ -8,10 +8,10 @@
 namespace pregrasp {
 
 struct PlacementSearchConfig {
-  int points = 400;                 ///< candidate contacts a finger, even over the surface
-  int pairs = 4000;                 ///< candidate placements of both fingers
-  double min_tip_distance = 0.015;  ///< between two fingers [m] (design: 15 mm)
-  double max_tip_distance = 0.13;   ///< what a hand spans [m] (findings: 13 cm)
+  int points = 400;  ///< candidate contacts a finger, even over the surface
+  int pairs = 4000;  ///< candidate placements of both fingers
+  double max_tip_distance =
+      0.13;               ///< between two contacts [m]: what a hand spans (findings: 13 cm)
   double spacing = 0.01;  ///< placements of the same fingers differ by this much somewhere [m]
 
   /// @throws InputError for lengths that do not go together.

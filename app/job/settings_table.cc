@@ -44,11 +44,6 @@ Settings GraphSettings() {
        "percent of the nodes that each score keeps",
        FIELD(graph.top_percent),
        {}},
-      {"graph.min_tip_distance",
-       Real(0.0, 0.2, "m"),
-       "two tips closer than this score 0",
-       FIELD(graph.min_tip_distance),
-       {}},
       {"paths.stages", Whole(1, 8), "contact states in a path", FIELD(stages), {}},
   };
 }
@@ -134,7 +129,7 @@ Settings MppiSettings() {
        {}},
       {"mppi.tip_spacing",
        Real(0.0, 1000.0),
-       "weight: tips nearer than 15 mm",
+       "weight: the two tips overlap, by the share of a fingertip's radius",
        FIELD(mppi.weights.tip_spacing),
        {}},
       {"mppi.fall",

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "app/core/math.h"
+
 namespace pregrasp {
 
 /// The five fingers of a right hand, in the paper's order. The planner's contact states use the
@@ -19,6 +21,19 @@ inline const char* FingerName(Finger finger) { return kFingerNames[static_cast<i
 /// inverse kinematics. Its centre is (0, 0, .0209) in the distal frame; for the thumb (0, 0, .024).
 inline constexpr double FingertipRadius(Finger finger) {
   return finger == Finger::kThumb ? 0.0109 : 0.0090;
+}
+
+/// The centre of the fingertip sphere that touches p_C from outside, where the outward unit normal
+/// is nhat. Both in any one frame, as the result.
+inline Vector3 FingertipCentre(Finger finger, const Vector3& p_C, const Vector3& nhat) {
+  return p_C + FingertipRadius(finger) * nhat;
+}
+
+/// How far apart two fingertip spheres are [m], by their centres in any one frame. Below 0 they
+/// overlap, which no hand can do (design, section 4): this is what spacing means for contact nodes,
+/// plans, generated grasps and search alike.
+inline double CalcTipGap(Finger a, const Vector3& p_TipA, Finger b, const Vector3& p_TipB) {
+  return (p_TipA - p_TipB).norm() - FingertipRadius(a) - FingertipRadius(b);
 }
 
 }  // namespace pregrasp

@@ -17,10 +17,12 @@ std::vector<CertifyReason> Judge(const PlanOutcome& outcome, const CertifyConfig
   const bool touches = outcome.contact_seconds > 0.0;
   const bool clear = outcome.max_tip_overlap <= kTipOverlapAllowed;
   const bool holds = shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg;
+  const bool apart = outcome.min_tip_gap >= 0.0;
   const bool resolved = outcome.unresolved <= config.max_unresolved;
   std::vector<CertifyReason> reasons;
   if (!touches) reasons.push_back(CertifyReason::kNeverTouches);
   if (!clear) reasons.push_back(CertifyReason::kTipOverlap);
+  if (!apart) reasons.push_back(CertifyReason::kTipsTooClose);
   if (!resolved) reasons.push_back(CertifyReason::kNotConverged);
   if (!holds) reasons.push_back(CertifyReason::kDoesNotHold);
   return reasons;
@@ -47,6 +49,8 @@ const char* CertifyReasonText(CertifyReason reason) {
       return "the object left the scene";
     case CertifyReason::kTipOverlap:
       return "a fingertip overlaps the surroundings by more than 0.3 mm";
+    case CertifyReason::kTipsTooClose:
+      return "the fingertips overlap each other";
     case CertifyReason::kDoesNotHold:
       return "the object does not stay where it is while the last targets are kept";
     case CertifyReason::kNeverTouches:

@@ -9,11 +9,10 @@
 namespace pregrasp {
 namespace {
 
-constexpr double kRestSpeed = 0.1;         // [m/s] counts as one unit of unrest
-constexpr double kRestTurn = 1.0;          // [rad/s] counts as one unit of unrest
-constexpr double kFastSpeed = 0.35;        // [m/s]
-constexpr double kMinTipDistance = 0.015;  // [m]
-constexpr double kFallDepth = 0.15;        // [m] below its start: over the edge and gone
+constexpr double kRestSpeed = 0.1;   // [m/s] counts as one unit of unrest
+constexpr double kRestTurn = 1.0;    // [rad/s] counts as one unit of unrest
+constexpr double kFastSpeed = 0.35;  // [m/s]
+constexpr double kFallDepth = 0.15;  // [m] below its start: over the edge and gone
 
 ScoredState MakeScoredState(const World& world, const WorldState& state) {
   ScoredState scored;
@@ -76,7 +75,8 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
     const double share = std::min(1.0, outcome.tip_overlap_seconds / outcome.seconds);
     cost.tip_overlap = weights.tip_overlap * 0.5 * (1.0 + share);
   }
-  cost.tip_spacing = outcome.min_tip_distance < kMinTipDistance ? weights.tip_spacing : 0.0;
+  const double depth = std::max(0.0, -outcome.min_tip_gap);
+  cost.tip_spacing = weights.tip_spacing * std::min(1.0, depth / FingertipRadius(Finger::kIndex));
   const BodyState& start = outcome.stage_starts.front().bodies.front();
   const Vector3 up = -world.scene().gravity.normalized();
   const bool fallen = outcome.diverged || up.dot(end.p_WB - start.p_WB) < -kFallDepth;

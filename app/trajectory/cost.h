@@ -18,7 +18,8 @@ struct CostWeights {
   double speed = 0.8;        ///< peak speed above 0.35 m/s, in m/s, at most 2
   double tip_overlap = 1.0;  ///< a fingertip in the surroundings: such a plan is never certified;
                              ///< half of it at once, the rest by the share of the time
-  double tip_spacing = 0.5;  ///< both tips on and nearer than 15 mm
+  double tip_spacing = 1.0;  ///< deepest overlap of the two tips' spheres over a finger's radius,
+                             ///< at most 1: such a plan is never certified
   double fall = 1.5;         ///< the object fell out of the scene, or the simulation diverged
 };
 

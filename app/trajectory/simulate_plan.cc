@@ -99,7 +99,7 @@ class PlanRunner {
     PREGRASP_CHECK(IsFiniteState(outcome_.end) && IsFiniteState(outcome_.hold_start));
     PREGRASP_CHECK(AreFinite(outcome_.seconds, outcome_.contact_seconds, outcome_.effort,
                              outcome_.max_force, outcome_.max_speed, outcome_.max_penetration,
-                             outcome_.max_tip_overlap, outcome_.min_tip_distance));
+                             outcome_.max_tip_overlap, outcome_.min_tip_gap));
     return std::move(outcome_);
   }
 
@@ -167,8 +167,12 @@ class PlanRunner {
     }
     if (overlaps) outcome_.tip_overlap_seconds += seconds;
     if (state_.fingers[0].on && state_.fingers[1].on) {
-      const double distance = (state_.fingers[0].p_OC - state_.fingers[1].p_OC).norm();
-      outcome_.min_tip_distance = std::min(outcome_.min_tip_distance, distance);
+      const auto centre_O = [&](int j) {
+        const FingertipState& tip = state_.fingers[j];
+        return FingertipCentre(static_cast<Finger>(j), tip.p_OC, tip.nhat_O);
+      };
+      const double gap = CalcTipGap(Finger::kThumb, centre_O(0), Finger::kIndex, centre_O(1));
+      outcome_.min_tip_gap = std::min(outcome_.min_tip_gap, gap);
     }
   }
 

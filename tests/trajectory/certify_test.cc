@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "app/core/error.h"
@@ -160,6 +161,8 @@ TEST(CertifyConvergenceTest, WhatIsLeftAtRestBelowTheToleranceDoesNotMatter) {
   EXPECT_TRUE(result.certified);
   EXPECT_NEAR(result.full.unconverged_seconds, result.full.seconds, 1e-9);
   EXPECT_LT(result.full.unresolved, 1e-4);
+}
+
 // A box that a finger presses from the side, `z` above the table, and does not move.
 Certificate PressFromTheSide(double z) {
   Scene scene = MakeRulerScene();
@@ -186,6 +189,23 @@ TEST(CertifyTipTest, AFingertipMayBe3TenthsOfAMillimetreInTheSurroundingsAndNoMo
   EXPECT_FALSE(deeper.certified);
   EXPECT_EQ(deeper.reasons, std::vector<CertifyReason>{CertifyReason::kTipOverlap});
   EXPECT_NEAR(deeper.full.max_tip_overlap, 0.00035, 2e-5);
+}
+
+TEST_F(CertifyTest, FingertipsThatOverlapEachOtherAreNotCertified) {
+  // Thumb and index finger press the top: their spheres need 19.9 mm between their centres, which
+  // are 1.9 mm apart in height.
+  for (const double apart : {0.0197, 0.0199}) {
+    WorldPlan plan = MakeRulerDrag(0.01, 0.0);
+    WorldPlan::Finger& thumb = plan.stages[0][0];
+    thumb.on = true;
+    thumb.contact = {true, Vector3(apart, 0.0, 0.0015), Vector3::UnitZ()};
+    thumb.p_WTargets.assign(4, Vector3(-0.16 + apart, 0.0, 0.003 - 0.01));
+    const Certificate result = Certify(plan);
+    EXPECT_NEAR(result.full.min_tip_gap, std::hypot(apart, 0.0019) - 0.0199, 1e-5);
+    const bool too_close = std::find(result.reasons.begin(), result.reasons.end(),
+                                     CertifyReason::kTipsTooClose) != result.reasons.end();
+    EXPECT_EQ(too_close, apart < 0.0198) << apart;
+  }
 }
 
 }  // namespace

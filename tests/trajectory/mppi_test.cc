@@ -143,6 +143,22 @@ TEST(MppiTest, APlanWithoutContactIsTheWorstKindOfRest) {
   EXPECT_NEAR(cost.total, CostWeights().no_contact, 1e-3);
 }
 
+TEST(PlanCostTest, TheTipsOverlapCostsByItsDepthUpToAFingertipsRadius) {
+  const RulerProblem ruler;
+  const Mppi mppi(ruler.Make(2, 1), QuickConfig());
+  PlanOutcome outcome = mppi.Simulate(std::vector<double>(mppi.Start().mean.size(), -5.0));
+  const std::vector<double> scores(StatesToScore(ruler.world, outcome).size(), 0.0);
+  const auto cost_at = [&](double gap) {
+    outcome.min_tip_gap = gap;
+    return CalcPlanCost(ruler.world, outcome, scores, 0.0, CostWeights(), 0.7).tip_spacing;
+  };
+  EXPECT_EQ(cost_at(0.1), 0.0);
+  EXPECT_EQ(cost_at(0.0), 0.0);
+  EXPECT_NEAR(cost_at(-0.0001), CostWeights().tip_spacing / 90.0, 1e-12);
+  EXPECT_NEAR(cost_at(-0.0045), CostWeights().tip_spacing / 2.0, 1e-12);
+  EXPECT_EQ(cost_at(-0.0199), CostWeights().tip_spacing);
+}
+
 TEST(MppiTest, AConfigurationThatNoSettingGivesIsOurBug) {
   const RulerProblem ruler;
   MppiConfig few, nowhere;
