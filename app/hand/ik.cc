@@ -18,8 +18,6 @@ using internal::IkTerms;
 // SLSQP is worth its time where least squares ends this near to a solution: the square root of its
 // residual sum, in millimetres. Farther away a fresh start is cheaper.
 constexpr double kStallReach = 3.0;
-// Starts spent on telling why there is no solution.
-constexpr int kReasonStarts = 3;
 
 void Require(bool condition, const char* field, const char* expected, double got) {
   if (!condition) throw InputError("ik", field, expected, FormatDouble(got));
@@ -40,8 +38,8 @@ IkResult Describe(const IkTerms& terms, const IkPoint& point) {
   result.clearance = point.clearance;
   result.contact_overlap = point.contact_overlap;
   for (const HandDistance& near : point.near) {
-    if (near.touch || (result.closest && near.distance >= result.closest->distance)) continue;
-    result.closest = near;
+    std::optional<HandDistance>& least = near.touch ? result.deepest_contact : result.closest;
+    if (!least || near.distance < least->distance) least = near;
   }
   return result;
 }
@@ -112,7 +110,7 @@ IkStatus FindReason(const HandModel& hand, const IkConfig& config, const IkProbl
                     Rng& rng) {
   IkConfig plain = config;
   plain.collision = false;
-  plain.max_starts = std::min(config.max_starts, kReasonStarts);
+  plain.max_starts = std::min(config.max_starts, config.reason_starts);
   const auto solves = [&] {
     const IkTerms terms(hand, nullptr, plain, problem);
     return Searcher(terms, problem, nullptr).Run(rng).solved;
@@ -120,6 +118,13 @@ IkStatus FindReason(const HandModel& hand, const IkConfig& config, const IkProbl
   if (config.collision && solves()) return IkStatus::kCollision;
   plain.max_cone_deg = 180.0;
   return solves() ? IkStatus::kCone : IkStatus::kTipError;
+}
+
+// The first demand that a configuration within its joint limits misses, without a certificate.
+IkStatus FindMiss(const IkTerms& terms, const IkPoint& point) {
+  if (internal::IsSolution(terms, point, terms.config.tip_tolerance)) return IkStatus::kSolved;
+  if (!(point.max_tip_error <= terms.config.tip_tolerance)) return IkStatus::kTipError;
+  return point.min_cosine >= terms.least_cosine ? IkStatus::kCollision : IkStatus::kCone;
 }
 
 std::vector<const Shape*> ShapesOf(const Scene& scene) {
@@ -147,6 +152,7 @@ void IkConfig::Validate() const {
   Require(start_candidates >= 1, "start_candidates", "at least 1", start_candidates);
   Require(max_iterations >= 1, "max_iterations", "at least 1", max_iterations);
   Require(slsqp_evaluations >= 1, "slsqp_evaluations", "at least 1", slsqp_evaluations);
+  Require(reason_starts >= 0, "reason_starts", "no negative count", reason_starts);
   Require(warm_starts >= 1, "warm_starts", "at least 1", warm_starts);
 }
 
@@ -193,7 +199,8 @@ IkResult IkSolver::Solve(const IkConfig& config, const IkProblem& problem, Rng r
   } else if (search.denied > 0) {
     result.status = IkStatus::kNotCertified;
   } else {
-    result.status = FindReason(impl_->hand, config, problem, rng);
+    result.status = config.reason_starts > 0 ? FindReason(impl_->hand, config, problem, rng)
+                                             : FindMiss(terms, search.best);
   }
   result.method = search.method;
   result.starts = search.starts;
@@ -214,15 +221,12 @@ IkResult IkSolver::Evaluate(const IkConfig& config, const IkProblem& problem,
   if ((configuration.q.array() < terms.hand.q_lower.array()).any() ||
       (configuration.q.array() > terms.hand.q_upper.array()).any()) {
     result.status = IkStatus::kJointLimits;
-  } else if (internal::IsSolution(terms, point, config.tip_tolerance)) {
-    const bool denied =
-        config.collision && config.certify &&
-        !impl_->certificate.FindCollisions(configuration, problem.X_WB, terms.touch, true).empty();
-    result.status = denied ? IkStatus::kNotCertified : IkStatus::kSolved;
-  } else if (point.max_tip_error > config.tip_tolerance) {
-    result.status = IkStatus::kTipError;
   } else {
-    result.status = point.min_cosine < terms.least_cosine ? IkStatus::kCone : IkStatus::kCollision;
+    result.status = FindMiss(terms, point);
+    const bool denied =
+        result.solved() && config.collision && config.certify &&
+        !impl_->certificate.FindCollisions(configuration, problem.X_WB, terms.touch, true).empty();
+    if (denied) result.status = IkStatus::kNotCertified;
   }
   return result;
 }

@@ -40,6 +40,9 @@ struct IkConfig {
   double clearance_buffer = 6e-4;
   /// SLSQP sees pairs nearer than this [m]. Neighbouring fingers at rest are 2.6 mm apart.
   double influence = 3e-3;
+  /// Starts spent on telling why there is no solution, for each demand; without any, the status is
+  /// the first demand that the best attempt misses.
+  int reason_starts = 3;
   int warm_starts = 5;  ///< of max_starts, how many begin at a given warm start, all but the first
                         ///< perturbed by a few centimetres and a third of a radian
 
@@ -99,11 +102,12 @@ struct IkResult {
   double clearance = 0.0;
   std::optional<HandDistance> closest;
   double contact_overlap = 0.0;  ///< of contacting distal links with the object, the largest [m]
-  IkMethod method = IkMethod::kNone;  ///< whose result it is
-  int starts = 0;                     ///< initial postures used
-  int iterations = 0;                 ///< of least squares, all starts
-  int evaluations = 0;                ///< of SLSQP, all takeovers
-  int denied = 0;                     ///< solutions that FCL denied
+  std::optional<HandDistance> deepest_contact;  ///< that pair
+  IkMethod method = IkMethod::kNone;            ///< whose result it is
+  int starts = 0;                               ///< initial postures used
+  int iterations = 0;                           ///< of least squares, all starts
+  int evaluations = 0;                          ///< of SLSQP, all takeovers
+  int denied = 0;                               ///< solutions that FCL denied
 
   bool solved() const { return status == IkStatus::kSolved; }
   HandConfiguration configuration() const { return {X_WH, q}; }
