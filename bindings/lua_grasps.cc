@@ -50,10 +50,16 @@ double GraspsRawSuccess(LuaGrasps& grasps) {
   const auto state = grasps.state();
   return state->grasps ? state->grasps->r_suc_raw() : 0.0;
 }
+// As r_suc: of the generator's samples alone.
 double GraspsLiftSuccess(LuaGrasps& grasps) {
-  return grasps.grasps.empty() ? 0.0
-                               : static_cast<double>(grasps.node->progress.lifted) /
-                                     static_cast<double>(grasps.grasps.size());
+  int generated = 0, lifting = 0;
+  for (const auto& grasp : grasps.grasps) {
+    if (grasp->facts().source != GraspSourceName(GraspSource::kGenerator)) continue;
+    ++generated;
+    const bool lifted = grasp->lift != nullptr;
+    lifting += lifted && std::get<LiftFacts>(grasp->lift->facts.details).held ? 1 : 0;
+  }
+  return generated == 0 ? 0.0 : static_cast<double>(lifting) / generated;
 }
 
 int GraspsToString(lua_State* L) {
@@ -76,7 +82,7 @@ std::string GraspReason(LuaGrasp& grasp) { return grasp.facts().status; }
 std::string GraspRawReason(LuaGrasp& grasp) { return grasp.facts().raw_status; }
 std::string GraspText(LuaGrasp& grasp) { return grasp.facts().sentence; }
 std::string GraspSource(LuaGrasp& grasp) { return grasp.facts().source; }
-int GraspSample(LuaGrasp& grasp) { return grasp.number(); }
+int GraspSample(LuaGrasp& grasp) { return grasp.facts().number; }
 double GraspMoved(LuaGrasp& grasp) { return grasp.facts().moved_mm; }
 int GraspRefinements(LuaGrasp& grasp) { return grasp.facts().refinements; }
 std::string GraspStepId(LuaGrasp& grasp) { return grasp.step->id(); }
@@ -130,7 +136,7 @@ Pushed GraspLift(lua_State* L, LuaGrasp& grasp) {
 int GraspToString(lua_State* L) {
   const auto grasp = FindObject<LuaGrasp>(L, 1);
   const std::string text =
-      grasp ? fmt::format("Grasp({}, {})", grasp->number(), grasp->facts().status) : "Grasp";
+      grasp ? fmt::format("Grasp({}, {})", grasp->entry(), grasp->facts().status) : "Grasp";
   lua_pushlstring(L, text.data(), text.size());
   return 1;
 }

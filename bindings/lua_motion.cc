@@ -237,7 +237,7 @@ Pushed GraspMotion(lua_State* L, LuaGrasp& grasp, const MotionOptions& options) 
   PushObject(L, std::make_shared<LuaMotion>(
                     LuaMotion{{grasp.all.session, grasp.all.node, options.ToSettings()},
                               grasp.all.node,
-                              grasp.number()}));
+                              grasp.entry()}));
   CountMemory(L, kMotionKib);
   return {1};
 }

@@ -79,9 +79,9 @@ struct LuaGrasp {
   const Timeline::Node* lift = nullptr;  ///< null if it was not lifted
 
   const GraspFacts& facts() const { return std::get<GraspFacts>(step->facts.details); }
-  int number() const { return facts().number; }
+  int entry() const { return facts().entry; }
   const CompletedGrasp& grasp(const JobState& state) const {
-    return state.grasps->grasps[static_cast<std::size_t>(number()) - 1];
+    return state.grasps->grasps[static_cast<std::size_t>(entry()) - 1];
   }
 };
 

@@ -26,8 +26,6 @@ enum class RngStream : std::uint8_t {
   kReleasePlacements,
   kGraspLatent,
   kGraspCompletion,
-  kGraspRefinement,
-  kRefinedGraspIk,
   kSearchedContacts,
   kSearchedGraspIk,
   kProposedGraspIk,
@@ -49,6 +47,8 @@ enum class RngStream : std::uint8_t {
   kBatchOrder,
   kBatchNoise,
   kEvaluationNoise,
+  kCompletionProbes,
+  kSecondSource,
 };
 
 /// Counter-based generator: Philox4x64-10 (Salmon et al., "Parallel random numbers: as easy as 1,

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "app/core/rng.h"
-#include "app/grasp/grasp_world.h"
+#include "app/grasp/contact_places.h"
 
 namespace pregrasp {
 
@@ -19,7 +19,6 @@ struct SamplerConfig {
   /// Share of sets whose thumb lies opposite a finger: where a line from the finger's contact
   /// within its friction cone leaves the object.
   double opposed_share = 0.6;
-  double min_tip_distance = 0.015;  ///< [m], as KinematicConfig
   /// What a fingertip sphere at a contact may overlap.
   TouchSlack slack;
 
@@ -34,6 +33,9 @@ class ContactSampler {
   /// @param world  outlives this.
   ContactSampler(const GraspWorld& world, const std::vector<RigidTransform>& X_WB,
                  const SamplerConfig& config);
+  /// The same with places made already, in place of those of the configuration's slack.
+  /// @param places  outlives this.
+  ContactSampler(const ContactPlaces& places, const SamplerConfig& config);
 
   /// A set that holds the contacts in `fixed`, or none if this draw came to nothing. Contacts in
   /// order of their fingers.
@@ -41,38 +43,24 @@ class ContactSampler {
                                                   Rng& rng) const;
 
   /// Surface points where the finger's tip can be.
-  int num_points(Finger finger) const { return static_cast<int>(PoolOf(finger).point.size()); }
+  int num_points(Finger finger) const { return places_.count(finger); }
 
  private:
-  // Surface points that one size of fingertip can touch.
-  struct Pool {
-    double radius = 0.0;
-    std::vector<int> point;                 // into world.surface()
-    std::vector<Vector3> centre;            // of the tip
-    std::vector<std::vector<int>> buckets;  // of pool indices, by direction of the normal
-    std::array<int, 3> cells{};             // a grid over the centres
-    Vector3 corner = Vector3::Zero();
-    std::vector<int> cell_start, cell_points;
-  };
   struct Draw {
     bool near = false;
     bool opposed = false;
   };
 
-  Pool MakePool(double radius) const;
-  const Pool& PoolOf(Finger finger) const { return pools_[finger == Finger::kThumb ? 0 : 1]; }
-  int DrawAny(const Pool& pool, Rng& rng) const;
-  int DrawNear(const Pool& pool, const Vector3& centre, double distance, Rng& rng) const;
   std::optional<GraspContact> DrawOpposite(const GraspContact& from, Finger finger, Rng& rng) const;
   std::optional<GraspContact> DrawContact(Finger finger, const std::vector<GraspContact>& placed,
                                           const Draw& draw, Rng& rng) const;
   bool Fits(const GraspContact& contact, const std::vector<GraspContact>& placed,
             const Draw& draw) const;
 
+  std::shared_ptr<const ContactPlaces> owned_;  // null for places made already
+  const ContactPlaces& places_;
   const GraspWorld& world_;
-  std::vector<RigidTransform> X_WB_;
   SamplerConfig config_;
-  std::array<Pool, 2> pools_;  // thumb, other fingers
 };
 
 }  // namespace pregrasp

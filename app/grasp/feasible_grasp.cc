@@ -31,6 +31,18 @@ GraspStatus ToStatus(KinematicStatus status) {
   return GraspStatus::kTipError;
 }
 
+GraspStatus ToStatus(WrenchStatus status) {
+  switch (status) {
+    case WrenchStatus::kFeasible:
+      return GraspStatus::kFeasible;
+    case WrenchStatus::kNoInternalForces:
+      return GraspStatus::kNoInternalForces;
+    case WrenchStatus::kWeightNotBalanced:
+      return GraspStatus::kWeightNotBalanced;
+  }
+  return GraspStatus::kNoInternalForces;
+}
+
 // How far a failed attempt came.
 int Progress(GraspStatus status) {
   return status == GraspStatus::kFeasible ? static_cast<int>(GraspStatus::kNotCertified) + 1
@@ -45,29 +57,81 @@ std::string JoinFingers(const std::vector<GraspContact>& contacts) {
   return names;
 }
 
-// What overlaps in the best attempt.
-std::string DescribeOverlap(const IkResult& ik, const GraspWorld& world) {
+// The pair in the way in the best attempt: the one that goes beyond what it may the most.
+std::optional<HandOverlap> FindOverlap(const GraspWorld& world, const IkConfig& config,
+                                       const IkResult& ik) {
+  const bool at_contact =
+      ik.deepest_contact && (!ik.closest || ik.contact_overlap - config.contact_depth >
+                                                config.min_clearance - ik.clearance);
+  const std::optional<HandDistance>& pair = at_contact ? ik.deepest_contact : ik.closest;
+  if (!pair) return std::nullopt;
   const std::vector<HandCapsule>& capsules = world.ik().hand().capsules;
-  if (ik.clearance >= 0.0 || !ik.closest) {
-    return fmt::format("a fingertip would enter the object by {:.1f} mm", 1e3 * ik.contact_overlap);
-  }
-  const bool self = ik.closest->pair == HandPair::kSelf;
-  return fmt::format(
-      "{} would overlap {} by {:.1f} mm", capsules[ik.closest->capsule].name,
-      self ? capsules[ik.closest->other].name : world.scene().bodies[ik.closest->other].name,
-      -1e3 * ik.clearance);
+  return HandOverlap{capsules.at(pair->capsule).name,
+                     pair->pair == HandPair::kSelf ? capsules.at(pair->other).name
+                                                   : world.scene().bodies.at(pair->other).name,
+                     -pair->distance};
 }
 
-bool TipsTooClose(const std::vector<GraspContact>& contacts, double min_distance) {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if ((TipCentre(contacts[i]) - TipCentre(contacts[k])).norm() < min_distance) return true;
-    }
+std::string DescribeOverlap(const std::optional<HandOverlap>& overlap) {
+  if (!overlap) return "not without overlap";
+  if (!(overlap->depth > 0.0))
+    return fmt::format("{} is in the way of {}", overlap->other, overlap->link);
+  return fmt::format("{} would overlap {} by {:.1f} mm", overlap->link, overlap->other,
+                     1e3 * overlap->depth);
+}
+
+// The finger of the largest of some numbers.
+Finger FindWorst(const std::array<double, kNumFingers>& values) {
+  return static_cast<Finger>(std::max_element(values.begin(), values.end()) - values.begin());
+}
+
+// The first finger that no grasp is without, of those that are not among the contacts.
+std::optional<Finger> FindMissing(const std::vector<GraspContact>& contacts) {
+  for (const Finger finger : {Finger::kThumb, Finger::kIndex, Finger::kMiddle}) {
+    const bool placed =
+        std::any_of(contacts.begin(), contacts.end(),
+                    [&](const GraspContact& contact) { return contact.finger == finger; });
+    if (!placed) return finger;
   }
-  return false;
+  return std::nullopt;
+}
+
+GraspFault FindFault(const GraspWorld& world, const GraspConfig& config,
+                     const GraspResult& result) {
+  GraspFault fault;
+  switch (result.status) {
+    case GraspStatus::kFeasible:
+      break;
+    case GraspStatus::kNoPlace:
+      fault.finger = FindMissing(result.contacts);
+      break;
+    case GraspStatus::kTipsTooClose:
+      fault.tips = FindNearestTips(result.contacts);
+      break;
+    case GraspStatus::kNoInternalForces:
+    case GraspStatus::kWeightNotBalanced:
+      fault.missing_wrench = -result.wrench->separating;
+      break;
+    case GraspStatus::kTipError:
+      fault.finger = FindWorst(result.kinematics->ik.tip_errors);
+      break;
+    case GraspStatus::kCone:
+      fault.finger = FindWorst(result.kinematics->ik.cone_angles);
+      break;
+    case GraspStatus::kCollision:
+    case GraspStatus::kNotCertified:
+      fault.overlap = FindOverlap(world, config.kinematics.ik, result.kinematics->ik);
+      break;
+  }
+  return fault;
 }
 
 }  // namespace
+
+std::vector<std::vector<Finger>> DroppableSets(bool may_drop) {
+  if (!may_drop) return {{}};
+  return {{}, {Finger::kLittle}, {Finger::kRing}, {Finger::kRing, Finger::kLittle}};
+}
 
 void GraspConfig::Validate() const {
   if (!(std::isfinite(f_min) && f_min >= 0.0)) {
@@ -78,8 +142,8 @@ void GraspConfig::Validate() const {
 
 const char* GraspStatusName(GraspStatus status) {
   constexpr const char* kNames[] = {
-      "feasible",  "tips_too_close", "no_internal_forces", "weight_not_balanced",
-      "tip_error", "cone",           "collision",          "not_certified"};
+      "feasible",  "no_place", "tips_too_close", "no_internal_forces", "weight_not_balanced",
+      "tip_error", "cone",     "collision",      "not_certified"};
   return kNames[static_cast<int>(status)];
 }
 
@@ -95,11 +159,13 @@ std::string Explain(const GraspResult& result, const GraspWorld& world) {
       return fmt::format("{}: feasible; smallest normal force {:.2f} N, margin {:.3f}{}", fingers,
                          result.wrench->min_normal, result.wrench->margin,
                          result.wrench->closed ? "" : " (no force closure)");
+    case GraspStatus::kNoPlace:
+      return fmt::format("{}: the {} finds no place on the object",
+                         fingers.empty() ? "no finger" : fingers, FingerName(*result.fault.finger));
     case GraspStatus::kTipsTooClose:
-      return fmt::format("{}: the fingertips of {} and {} would be {:.1f} mm apart", fingers,
-                         FingerName(result.kinematics->nearest_tips[0]),
-                         FingerName(result.kinematics->nearest_tips[1]),
-                         1e3 * result.kinematics->tip_distance);
+      return fmt::format("{}: the fingertips of {} and {} would overlap by {:.1f} mm", fingers,
+                         FingerName(result.fault.tips->fingers[0]),
+                         FingerName(result.fault.tips->fingers[1]), -1e3 * result.fault.tips->gap);
     case GraspStatus::kNoInternalForces:
       return fmt::format("{}: no forces within the cones cancel out; those tried miss by {:.2f} N",
                          fingers, result.wrench->residual);
@@ -115,33 +181,91 @@ std::string Explain(const GraspResult& result, const GraspWorld& world) {
                          fingers, RadToDeg(result.kinematics->ik.cone_angle));
     case GraspStatus::kCollision:
       return fmt::format("{}: within reach, but {}", fingers,
-                         DescribeOverlap(result.kinematics->ik, world));
+                         DescribeOverlap(result.fault.overlap));
     case GraspStatus::kNotCertified:
       return fmt::format("{}: the only poses found are denied by the collision check", fingers);
   }
   return fingers;
 }
 
+GraspStatus CalcForceStatus(const GraspWorld& world, const GraspConfig& config,
+                            const std::vector<GraspContact>& contacts, const Matrix3& R_WO,
+                            Vector6* missing) {
+  if (!(FindNearestTips(contacts).gap >= 0.0)) return GraspStatus::kTipsTooClose;
+  Vector6 direction;
+  return ToStatus(CalcWrenchStatus(world.ToWrenchContacts(contacts),
+                                   world.MakeWrenchConfig(config.f_min, R_WO),
+                                   missing != nullptr ? missing : &direction));
+}
+
+GraspAttempt TryContacts(const GraspWorld& world, const GraspConfig& config,
+                         const std::vector<GraspContact>& contacts,
+                         const std::vector<RigidTransform>& X_WB, Rng rng,
+                         const HandConfiguration* warm_start) {
+  GraspAttempt attempt;
+  attempt.contacts = contacts;
+  attempt.status = CalcForceStatus(world, config, contacts, X_WB.at(0).linear());
+  if (attempt.feasible()) {
+    attempt.kinematics =
+        CalcKinematicFeasibility(world, config.kinematics, contacts, X_WB, rng, warm_start);
+    attempt.status = ToStatus(attempt.kinematics->status);
+  }
+  return attempt;
+}
+
+GraspResult ReportGrasp(const GraspWorld& world, const GraspConfig& config,
+                        const GraspAttempt& attempt, const std::vector<RigidTransform>& X_WB) {
+  GraspResult result;
+  result.status = attempt.status;
+  result.contacts = attempt.contacts;
+  result.kinematics = attempt.kinematics;
+  if (attempt.status != GraspStatus::kTipsTooClose && attempt.status != GraspStatus::kNoPlace) {
+    result.wrench = CalcWrench(world.ToWrenchContacts(attempt.contacts),
+                               world.MakeWrenchConfig(config.f_min, X_WB.at(0).linear()));
+  }
+  result.fault = FindFault(world, config, result);
+  return result;
+}
+
 GraspResult TestContacts(const GraspWorld& world, const GraspConfig& config,
                          const std::vector<GraspContact>& contacts,
                          const std::vector<RigidTransform>& X_WB, Rng rng,
                          const HandConfiguration* warm_start) {
-  GraspResult result;
-  result.contacts = contacts;
-  if (!TipsTooClose(contacts, config.kinematics.min_tip_distance)) {
-    const WrenchConfig wrench = world.MakeWrenchConfig(config.f_min, X_WB.at(0).linear());
-    result.wrench = CalcWrench(world.ToWrenchContacts(contacts), wrench);
-    if (!result.wrench->feasible()) {
-      result.status = result.wrench->status == WrenchStatus::kNoInternalForces
-                          ? GraspStatus::kNoInternalForces
-                          : GraspStatus::kWeightNotBalanced;
-      return result;
+  return ReportGrasp(world, config, TryContacts(world, config, contacts, X_WB, rng, warm_start),
+                     X_WB);
+}
+
+std::vector<GraspContact> WithoutFingers(const std::vector<GraspContact>& contacts,
+                                         const std::vector<Finger>& fingers) {
+  std::vector<GraspContact> rest;
+  for (const GraspContact& contact : contacts) {
+    if (std::find(fingers.begin(), fingers.end(), contact.finger) == fingers.end()) {
+      rest.push_back(contact);
     }
   }
-  result.kinematics =
-      CalcKinematicFeasibility(world, config.kinematics, contacts, X_WB, rng, warm_start);
-  result.status = ToStatus(result.kinematics->status);
-  return result;
+  return rest;
+}
+
+GraspAttempt TryGrasp(const GraspWorld& world, const GraspConfig& config,
+                      const std::vector<GraspContact>& contacts,
+                      const std::vector<RigidTransform>& X_WB, Rng rng,
+                      const HandConfiguration* warm_start) {
+  if (FindMissing(contacts)) {
+    GraspAttempt none;
+    none.contacts = contacts;
+    none.status = GraspStatus::kNoPlace;
+    return none;
+  }
+  std::optional<GraspAttempt> best;
+  for (const std::vector<Finger>& dropped : DroppableSets(config.may_drop)) {
+    const std::vector<GraspContact> rest = WithoutFingers(contacts, dropped);
+    if (rest.size() + dropped.size() != contacts.size()) continue;  // not among the contacts
+    GraspAttempt attempt = TryContacts(world, config, rest, X_WB, rng, warm_start);
+    if (!best || Progress(attempt.status) > Progress(best->status)) best = std::move(attempt);
+    if (best->feasible()) break;
+  }
+  PREGRASP_CHECK(best.has_value());
+  return *best;
 }
 
 GraspResult TestGrasp(const GraspWorld& world, const GraspConfig& config,
@@ -149,27 +273,7 @@ GraspResult TestGrasp(const GraspWorld& world, const GraspConfig& config,
                       const std::vector<RigidTransform>& X_WB, Rng rng,
                       const HandConfiguration* warm_start) {
   config.Validate();
-  const std::vector<std::vector<Finger>> left_out =
-      config.may_drop ? std::vector<std::vector<Finger>>{{},
-                                                         {Finger::kLittle},
-                                                         {Finger::kRing},
-                                                         {Finger::kRing, Finger::kLittle}}
-                      : std::vector<std::vector<Finger>>{{}};
-  std::optional<GraspResult> best;
-  for (const std::vector<Finger>& dropped : left_out) {
-    std::vector<GraspContact> rest;
-    for (const GraspContact& contact : contacts) {
-      if (std::find(dropped.begin(), dropped.end(), contact.finger) == dropped.end()) {
-        rest.push_back(contact);
-      }
-    }
-    if (rest.size() + dropped.size() != contacts.size()) continue;  // not among the contacts
-    GraspResult result = TestContacts(world, config, rest, X_WB, rng, warm_start);
-    if (!best || Progress(result.status) > Progress(best->status)) best = std::move(result);
-    if (best->feasible()) break;
-  }
-  PREGRASP_CHECK(best.has_value());
-  return *best;
+  return ReportGrasp(world, config, TryGrasp(world, config, contacts, X_WB, rng, warm_start), X_WB);
 }
 
 }  // namespace pregrasp

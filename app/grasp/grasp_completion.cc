@@ -1,89 +1,212 @@
 #include "app/grasp/grasp_completion.h"
 
 #include <algorithm>
-#include <cmath>
+#include <memory>
 
-#include "app/core/check.h"
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/core/text.h"
+#include "app/grasp/grasp_refinement.h"
+#include "app/grasp/spaced_projection.h"
 
 namespace pregrasp {
 namespace {
 
-bool IsFixed(const std::vector<GraspContact>& fixed, Finger finger) {
-  return std::any_of(fixed.begin(), fixed.end(),
-                     [&](const GraspContact& contact) { return contact.finger == finger; });
-}
+constexpr int kProbeChunk = 2048;  // sets drawn at a time, whatever the number of threads
+constexpr int kProbeTask = 64;
 
-std::vector<GraspContact> ProjectGrasp(const GraspWorld& world, const GraspPoints& generated,
-                                       const std::vector<GraspContact>& fixed) {
-  std::vector<GraspContact> contacts = fixed;
-  for (int f = 0; f < kNumFingers; ++f) {
-    const Finger finger = static_cast<Finger>(f);
-    if (IsFixed(fixed, finger)) continue;
-    contacts.push_back(world.ContactNear(finger, generated[f]));
-  }
-  std::sort(contacts.begin(), contacts.end(),
-            [](const GraspContact& a, const GraspContact& b) { return a.finger < b.finger; });
-  return contacts;
-}
-
-// `contacts` with those that are not fixed moved at random by up to `reach` along the surface.
-std::vector<GraspContact> MoveAlongSurface(const GraspWorld& world,
-                                           const std::vector<GraspContact>& contacts,
-                                           const std::vector<GraspContact>& fixed, double reach,
-                                           double max_reach, Rng& rng) {
-  std::vector<GraspContact> moved = contacts;
-  for (GraspContact& contact : moved) {
-    if (IsFixed(fixed, contact.finger)) continue;
-    const Vector3 start = contact.p_OC;
-    const double distance = reach * std::cbrt(rng.Uniform());
-    const Vector3 p_O = start + distance * rng.Direction();
-    const GraspContact candidate = world.ContactNear(contact.finger, p_O);
-    if ((candidate.p_OC - start).norm() <= max_reach) contact = candidate;
-  }
-  return moved;
-}
-
-double LargestMove(const std::vector<GraspContact>& a, const std::vector<GraspContact>& b) {
+double LargestMove(const std::vector<GraspContact>& projected,
+                   const std::vector<GraspContact>& contacts) {
   double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    largest = std::max(largest, (a[i].p_OC - b[i].p_OC).norm());
+  for (const GraspContact& contact : contacts) {
+    for (const GraspContact& from : projected) {
+      if (from.finger != contact.finger) continue;
+      largest = std::max(largest, (contact.p_OC - from.p_OC).norm());
+    }
   }
   return largest;
 }
 
-bool HasForces(GraspStatus status) {
-  return status != GraspStatus::kNoInternalForces && status != GraspStatus::kWeightNotBalanced &&
-         status != GraspStatus::kTipsTooClose;
+// The samples of one state of the world, refined together.
+class Completion {
+ public:
+  Completion(const ContactPlaces& places, const CompletionConfig& config,
+             std::span<const GeneratedGrasp> generated, const std::vector<GraspContact>& fixed,
+             ThreadPool* pool)
+      : places_(places),
+        config_(config),
+        refinement_(config.grasp),
+        generated_(generated),
+        fixed_(fixed),
+        pool_(pool),
+        raw_(generated.size()),
+        refinements_(generated.size()) {
+    IkConfig& ik = refinement_.kinematics.ik;
+    ik.max_starts = config.refinement_starts;
+    ik.warm_starts = std::max(1, config.refinement_starts - 1);
+  }
+
+  CompletionResult Run() {
+    ForEach([&](int i) { TestRaw(i); });
+    for (const GraspAttempt& raw : raw_) {
+      if (raw.feasible()) solved_.push_back(raw.kinematics->ik.configuration());
+    }
+    CompletionResult result;
+    const bool any_held = std::any_of(raw_.begin(), raw_.end(), [](const GraspAttempt& raw) {
+      return raw.kinematics.has_value();
+    });
+    if (!any_held && config_.max_probes > 0) result.hopeless = !AnyProbeHolds(&result.probes);
+    if (!result.hopeless) Refine();
+    result.grasps.resize(generated_.size());
+    ForEach([&](int i) { result.grasps[i] = Finish(i); });
+    return result;
+  }
+
+ private:
+  template <typename Task>
+  void ForEach(const Task& task) const {
+    Run(static_cast<int>(generated_.size()), task);
+  }
+  template <typename Task>
+  void Run(int count, const Task& task) const {
+    const auto run = [&](int i, int) {
+      ThrowIfInterrupted();
+      task(i);
+    };
+    if (pool_ != nullptr) {
+      pool_->ParallelFor(count, run);
+    } else {
+      for (int i = 0; i < count; ++i) run(i, 0);
+    }
+  }
+
+  void TestRaw(int i) {
+    const std::vector<GraspContact> projected =
+        ProjectSpaced(places_, generated_[i].points, fixed_);
+    refinements_[i] = std::make_unique<GraspRefinement>(places_, refinement_, projected, fixed_,
+                                                        config_.max_refinement, generated_[i].rng);
+    raw_[i] =
+        TryGrasp(places_.world(), config_.grasp, projected, places_.X_WB(), generated_[i].rng);
+    if (!raw_[i].feasible()) refinements_[i]->Start(raw_[i]);
+  }
+
+  // Whether any of many plausible sets holds: where none does, no completion will.
+  bool AnyProbeHolds(int* drawn) const {
+    const ContactSampler sampler(places_, config_.probes);
+    const std::uint64_t seed = Rng(generated_.front().rng).NextU64();
+    const Matrix3 R_WO = places_.X_WB().at(0).linear();
+    while (*drawn < config_.max_probes) {
+      const int count = std::min(kProbeChunk, config_.max_probes - *drawn);
+      std::vector<char> holds((count + kProbeTask - 1) / kProbeTask, 0);
+      Run(static_cast<int>(holds.size()), [&](int task) {
+        for (int i = task * kProbeTask; i < std::min(count, (task + 1) * kProbeTask); ++i) {
+          Rng rng(seed, RngStream::kCompletionProbes, *drawn + i);
+          const auto contacts = sampler.Sample(fixed_, rng);
+          if (!contacts) continue;
+          if (CalcForceStatus(places_.world(), config_.grasp, *contacts, R_WO) ==
+              GraspStatus::kFeasible) {
+            holds[task] = 1;
+            return;
+          }
+        }
+      });
+      *drawn += count;
+      if (std::find(holds.begin(), holds.end(), 1) != holds.end()) return true;
+    }
+    return false;
+  }
+
+  void Refine() {
+    for (int round = 0; round < config_.max_solves; ++round) {
+      if (round == config_.patience && solved_.empty()) return;
+      std::vector<int> open;
+      for (int i = 0; i < static_cast<int>(raw_.size()); ++i) {
+        const bool failed = !raw_[i].feasible() && raw_[i].status != GraspStatus::kNoPlace;
+        if (failed && refinements_[i]->open()) open.push_back(i);
+      }
+      if (open.empty()) return;
+      Run(static_cast<int>(open.size()), [&](int k) { refinements_[open[k]]->Step(solved_); });
+      for (const int i : open) {
+        const auto& found = refinements_[i]->found();
+        if (found) solved_.push_back(found->kinematics->ik.configuration());
+      }
+    }
+  }
+
+  CompletedGrasp Finish(int i) const {
+    CompletedGrasp grasp;
+    grasp.number = i + 1;
+    grasp.projected = refinements_[i]->projected();
+    grasp.raw = ReportGrasp(places_.world(), config_.grasp, raw_[i], places_.X_WB());
+    grasp.refinements = refinements_[i]->solves();
+    grasp.result = grasp.raw;
+    const auto& found = refinements_[i]->found();
+    if (found) {
+      grasp.result = ReportGrasp(places_.world(), config_.grasp, *found, places_.X_WB());
+      grasp.moved = LargestMove(grasp.projected, found->contacts);
+    }
+    return grasp;
+  }
+
+  const ContactPlaces& places_;
+  const CompletionConfig& config_;
+  GraspConfig refinement_;
+  std::span<const GeneratedGrasp> generated_;
+  const std::vector<GraspContact>& fixed_;
+  ThreadPool* pool_;
+  std::vector<GraspAttempt> raw_;
+  std::vector<std::unique_ptr<GraspRefinement>> refinements_;
+  std::vector<HandConfiguration> solved_;
+};
+
+void RequireCount(const char* field, int value, int least) {
+  if (value < least) {
+    throw InputError("", field, "at least " + std::to_string(least), std::to_string(value));
+  }
 }
 
 }  // namespace
 
-CompletedGrasp CompleteGrasp(const GraspWorld& world, const CompletionConfig& config,
-                             const GraspPoints& generated, const std::vector<GraspContact>& fixed,
-                             const std::vector<RigidTransform>& X_WB, const Rng& rng) {
-  PREGRASP_CHECK(config.max_refinement >= 0.0, config.max_refinement);
-  CompletedGrasp grasp;
-  grasp.projected = ProjectGrasp(world, generated, fixed);
-  grasp.raw = TestGrasp(world, config.grasp, grasp.projected, X_WB, rng);
-  grasp.result = grasp.raw;
-  if (grasp.raw.feasible()) return grasp;
-  Rng moves = rng.Split(RngStream::kGraspRefinement);
-  int solves = 0;
-  while (grasp.refinements < config.max_refinements && solves < config.max_solves) {
-    ++grasp.refinements;
-    const double share = static_cast<double>(grasp.refinements) / config.max_refinements;
-    const std::vector<GraspContact> moved = MoveAlongSurface(
-        world, grasp.projected, fixed, share * config.max_refinement, config.max_refinement, moves);
-    const GraspResult result = TestGrasp(world, config.grasp, moved, X_WB,
-                                         rng.Split(RngStream::kRefinedGraspIk, grasp.refinements));
-    solves += HasForces(result.status);
-    if (result.feasible()) {
-      grasp.result = result;
-      grasp.moved = LargestMove(grasp.projected, moved);
-      break;
-    }
+void CompletionConfig::Validate() const {
+  grasp.Validate();
+  probes.Validate();
+  if (!(max_refinement >= 0.0 && max_refinement <= 0.1)) {
+    throw InputError("", "max_refinement", "a length from 0 to 0.1 m",
+                     FormatDouble(max_refinement));
   }
+  RequireCount("max_solves", max_solves, 0);
+  RequireCount("refinement_starts", refinement_starts, 1);
+  RequireCount("patience", patience, 1);
+  RequireCount("max_probes", max_probes, 0);
+}
+
+const char* GraspSourceName(GraspSource source) {
+  return source == GraspSource::kGenerator ? "generator" : "search";
+}
+
+CompletedGrasp MakeSearchedGrasp(const GraspResult& found, int number) {
+  CompletedGrasp grasp;
+  grasp.source = GraspSource::kSearch;
+  grasp.number = number;
+  grasp.projected = found.contacts;
+  grasp.raw = found;
+  grasp.result = found;
   return grasp;
+}
+
+CompletionResult CompleteGrasps(const ContactPlaces& places, const CompletionConfig& config,
+                                std::span<const GeneratedGrasp> generated,
+                                const std::vector<GraspContact>& fixed, ThreadPool& pool) {
+  config.Validate();
+  if (generated.empty()) return {};
+  return Completion(places, config, generated, fixed, &pool).Run();
+}
+
+CompletedGrasp CompleteGrasp(const ContactPlaces& places, const CompletionConfig& config,
+                             const GeneratedGrasp& generated,
+                             const std::vector<GraspContact>& fixed) {
+  config.Validate();
+  return Completion(places, config, {&generated, 1}, fixed, nullptr).Run().grasps.front();
 }
 
 }  // namespace pregrasp

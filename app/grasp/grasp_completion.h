@@ -1,7 +1,11 @@
 #pragma once
 
+#include <span>
+#include <string>
 #include <vector>
 
+#include "app/core/thread_pool.h"
+#include "app/grasp/contact_sampler.h"
 #include "app/grasp/feasible_grasp.h"
 #include "app/networks/grasp_generator.h"
 
@@ -9,30 +13,69 @@ namespace pregrasp {
 
 struct CompletionConfig {
   GraspConfig grasp;
-  /// How far a contact may be moved from where its generated point meets the surface [m].
+  /// How far a contact may be moved from where its generated point was projected [m], in a straight
+  /// line: the far side of a thin plate is near.
   double max_refinement = 0.010;
-  int max_refinements = 300;  ///< moved sets drawn for a sample that is not feasible as it is
-  int max_solves = 16;        ///< of those, put to inverse kinematics: those whose forces hold
+  /// Moved sets put to inverse kinematics, for each sample that is not feasible as it is.
+  int max_solves = 16;
+  int refinement_starts = 3;  ///< of inverse kinematics, on each of these
+  /// Refinement of all samples ends after so many sets of each without any feasible grasp, raw or
+  /// refined.
+  int patience = 8;
+  /// Contact sets drawn, about 5 us each, where no sample holds as it is; if none of them holds
+  /// either, nothing is refined.
+  int max_probes = 40000;  ///< 0 to refine whatever there is
+  SamplerConfig probes;
+
+  CompletionConfig() { grasp.kinematics.ik.max_starts = 6; }
+  void Validate() const;
 };
 
-/// One generated grasp, tested.
+enum class GraspSource { kGenerator, kSearch };
+/// "generator", "search".
+const char* GraspSourceName(GraspSource source);
+
+/// One grasp to choose from, tested.
 struct CompletedGrasp {
-  /// The generated points projected to the true surface; what `raw` is the test of.
+  GraspSource source = GraspSource::kGenerator;
+  int number = 1;  ///< among those of its source, from 1
+  /// The generated points projected to the object (ProjectSpaced); what `raw` is the test of.
   std::vector<GraspContact> projected;
-  GraspResult raw;     ///< without refinement
-  GraspResult result;  ///< the refined grasp if it is feasible, else `raw`
-  double moved = 0.0;  ///< the farthest a contact was moved by refinement [m]
-  int refinements = 0;
+  GraspResult raw;      ///< without refinement
+  GraspResult result;   ///< the refined grasp if it is feasible, else `raw`
+  double moved = 0.0;   ///< the farthest a contact was moved by refinement [m]
+  int refinements = 0;  ///< moved sets put to inverse kinematics
 
   bool feasible() const { return result.feasible(); }
 };
 
-/// Projects generated points to the object's surface and tests the grasp; where it is not feasible,
-/// draws sets with contacts moved along the surface, farther and farther, until one is (design,
-/// section 4: r_suc with refinement, r_suc_raw without). Contacts of `fixed` are kept as they are.
-/// @param rng  keyed by the sample, its third index zero: the refinement draws from parts of it.
-CompletedGrasp CompleteGrasp(const GraspWorld& world, const CompletionConfig& config,
-                             const GraspPoints& generated, const std::vector<GraspContact>& fixed,
-                             const std::vector<RigidTransform>& X_WB, const Rng& rng);
+/// A grasp that the search found, as an entry beside generated ones.
+CompletedGrasp MakeSearchedGrasp(const GraspResult& found, int number);
+
+/// What the generator made, and the numbers that refine it: of stream kGrasp, keyed by the sample.
+struct GeneratedGrasp {
+  GraspPoints points;
+  Rng rng;
+};
+
+struct CompletionResult {
+  std::vector<CompletedGrasp> grasps;  ///< by sample
+  int probes = 0;                      ///< contact sets drawn because no sample held
+  bool hopeless = false;               ///< neither a sample nor any of these sets held
+};
+
+/// Projects generated grasps to the object and tests them; where one is not feasible, refines it
+/// (GraspRefinement). Samples are refined in rounds, one set of each, and begin with the hand poses
+/// that solved others: the same result for any number of threads (design, section 4: r_suc with
+/// refinement, r_suc_raw without). Contacts of `fixed` are kept as they are.
+/// @throws Interrupted.
+CompletionResult CompleteGrasps(const ContactPlaces& places, const CompletionConfig& config,
+                                std::span<const GeneratedGrasp> generated,
+                                const std::vector<GraspContact>& fixed, ThreadPool& pool);
+
+/// One alone, on this thread.
+CompletedGrasp CompleteGrasp(const ContactPlaces& places, const CompletionConfig& config,
+                             const GeneratedGrasp& generated,
+                             const std::vector<GraspContact>& fixed);
 
 }  // namespace pregrasp

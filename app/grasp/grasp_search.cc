@@ -28,27 +28,24 @@ struct SolvedSet {
   std::optional<GraspResult> grasp;
 };
 
-void RequireCount(const char* field, int value) {
-  if (value < 1) throw InputError("grasp_search", field, "at least 1", std::to_string(value));
+void RequireCount(const char* field, int value, int least = 1) {
+  if (value < least) {
+    throw InputError("grasp_search", field, "at least " + std::to_string(least),
+                     std::to_string(value));
+  }
 }
 
 class Searcher {
  public:
-  Searcher(const GraspWorld& world, const GraspSearchConfig& config,
-           const std::vector<GraspContact>& fixed, const std::vector<RigidTransform>& X_WB,
-           std::uint64_t seed)
-      : world_(world),
+  Searcher(const ContactPlaces& places, const GraspSearchConfig& config,
+           const std::vector<GraspContact>& fixed, std::uint64_t seed)
+      : world_(places.world()),
         config_(config),
         fixed_(fixed),
-        X_WB_(X_WB),
+        X_WB_(places.X_WB()),
         seed_(seed),
-        sampler_(world, X_WB, config.sampler),
-        wrench_(world.MakeWrenchConfig(config.grasp.f_min, X_WB.at(0).linear())),
-        reach_(config.grasp.kinematics) {
-    reach_.ik.collision = false;
-    reach_.ik.slsqp = false;
-    reach_.ik.max_starts = std::min(config.reach_starts, reach_.ik.max_starts);
-  }
+        sampler_(places, config.sampler),
+        wrench_(world_.MakeWrenchConfig(config.grasp.f_min, X_WB_.at(0).linear())) {}
 
   std::vector<DrawnSet> Draw(int first, int count, ThreadPool& pool) const {
     std::vector<DrawnSet> sets(count);
@@ -62,10 +59,11 @@ class Searcher {
 
   SolvedSet Solve(int index, const std::vector<GraspContact>& contacts) const {
     const Rng rng(seed_, RngStream::kSearchedGraspIk, index);
-    const KinematicResult plain = CalcKinematicFeasibility(world_, reach_, contacts, X_WB_, rng);
-    if (!plain.feasible()) return {};
-    const HandConfiguration start = plain.ik.configuration();
-    return {true, TestContacts(world_, config_.grasp, contacts, X_WB_, rng, &start)};
+    const GraspAttempt attempt = TryContacts(world_, config_.grasp, contacts, X_WB_, rng);
+    SolvedSet set;
+    set.reached = attempt.kinematics && attempt.kinematics->reached;
+    if (attempt.feasible()) set.grasp = ReportGrasp(world_, config_.grasp, attempt, X_WB_);
+    return set;
   }
 
  private:
@@ -85,7 +83,6 @@ class Searcher {
   std::uint64_t seed_;
   ContactSampler sampler_;
   WrenchConfig wrench_;
-  KinematicConfig reach_;
 };
 
 }  // namespace
@@ -93,10 +90,17 @@ class Searcher {
 void GraspSearchConfig::Validate() const {
   grasp.Validate();
   sampler.Validate();
-  RequireCount("max_sets", max_sets);
+  RequireCount("max_sets", max_sets, 0);
   RequireCount("max_solves", max_solves);
   RequireCount("max_found", max_found);
-  RequireCount("reach_starts", reach_starts);
+}
+
+GraspSearchConfig MakeSecondSourceConfig() {
+  GraspSearchConfig config;
+  config.max_sets = 20000;
+  config.max_solves = 192;
+  config.max_found = 8;
+  return config;
 }
 
 GraspSearchResult SearchGrasps(const GraspWorld& world, const GraspSearchConfig& config,
@@ -105,7 +109,16 @@ GraspSearchResult SearchGrasps(const GraspWorld& world, const GraspSearchConfig&
                                ThreadPool& pool,
                                const std::function<void(const GraspSearchStats&)>& progress) {
   config.Validate();
-  const Searcher searcher(world, config, fixed, X_WB, seed);
+  const ContactPlaces places(world, X_WB, config.sampler.slack);
+  return SearchGrasps(places, config, fixed, seed, pool, progress);
+}
+
+GraspSearchResult SearchGrasps(const ContactPlaces& places, const GraspSearchConfig& config,
+                               const std::vector<GraspContact>& fixed, std::uint64_t seed,
+                               ThreadPool& pool,
+                               const std::function<void(const GraspSearchStats&)>& progress) {
+  config.Validate();
+  const Searcher searcher(places, config, fixed, seed);
   GraspSearchResult result;
   GraspSearchStats& stats = result.stats;
   const auto done = [&] {

@@ -16,18 +16,18 @@ struct GraspSearchConfig {
   /// worth more than another restart.
   GraspConfig grasp;
   SamplerConfig sampler;
-  int max_sets = 100000;  ///< contact sets drawn, about 5 us each
+  int max_sets = 100000;  ///< contact sets drawn, about 5 us each; 0 does not search
   int max_solves =
       1000;  ///< of those, sets that may go on to inverse kinematics: milliseconds each
   /// Stop when so many grasps are found; what is found in the same group of 16 sets comes along.
   int max_found = 1;
-  /// Restarts without collision before those with: most sets that pass the forces fail already
-  /// there, at a fraction of the time.
-  int reach_starts = 3;
 
   GraspSearchConfig() { grasp.kinematics.ik.max_starts = 4; }
   void Validate() const;
 };
+
+/// Bounds for a second source beside generated grasps: a few grasps in about 0.3 s, or none.
+GraspSearchConfig MakeSecondSourceConfig();
 
 /// How far the drawn sets came.
 struct GraspSearchStats {
@@ -48,9 +48,16 @@ struct GraspSearchResult {
 
 /// Looks for feasible grasps by drawing contact sets: reach of the tips, then forces, then
 /// kinematics without collision, then the full test. The same result for any number of threads.
+/// @param places    where fingertips can be with the bodies where they are.
 /// @param fixed     contacts that every set must hold: fingers that already press.
 /// @param seed      keys every draw.
 /// @param progress  called between batches with what is done so far; may be empty.
+GraspSearchResult SearchGrasps(const ContactPlaces& places, const GraspSearchConfig& config,
+                               const std::vector<GraspContact>& fixed, std::uint64_t seed,
+                               ThreadPool& pool,
+                               const std::function<void(const GraspSearchStats&)>& progress = {});
+
+/// The same with the bodies at X_WB, the object first.
 GraspSearchResult SearchGrasps(const GraspWorld& world, const GraspSearchConfig& config,
                                const std::vector<GraspContact>& fixed,
                                const std::vector<RigidTransform>& X_WB, std::uint64_t seed,

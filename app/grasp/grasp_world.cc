@@ -13,6 +13,19 @@ constexpr double kReachTail = 1e-3;
 
 }  // namespace
 
+TipPair FindNearestTips(const std::vector<GraspContact>& contacts) {
+  TipPair nearest;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const double gap = CalcTipGap(contacts[k], contacts[i]);
+      if (gap >= nearest.gap) continue;
+      nearest = {{contacts[k].finger, contacts[i].finger}, gap};
+      if (std::isnan(gap)) return nearest;
+    }
+  }
+  return nearest;
+}
+
 TipReach MeasureTipReach(const HandModel& hand) {
   constexpr int kPairs = kNumFingers * (kNumFingers - 1) / 2;
   std::array<std::vector<double>, kPairs> distances;

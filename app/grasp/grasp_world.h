@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "app/geometry/signed_distance.h"
@@ -21,8 +22,23 @@ struct GraspContact {
 
 /// Where the fingertip sphere's centre is when it touches the contact.
 inline Vector3 TipCentre(const GraspContact& contact) {
-  return contact.p_OC + FingertipRadius(contact.finger) * contact.nhat_O;
+  return FingertipCentre(contact.finger, contact.p_OC, contact.nhat_O);
 }
+
+/// How far apart the fingertip spheres of two contacts are [m]; see the spheres' CalcTipGap.
+inline double CalcTipGap(const GraspContact& a, const GraspContact& b) {
+  return CalcTipGap(a.finger, TipCentre(a), b.finger, TipCentre(b));
+}
+
+/// Two fingertips of a grasp and how far apart their spheres are [m].
+struct TipPair {
+  std::array<Finger, 2> fingers{};
+  double gap = std::numeric_limits<double>::infinity();
+};
+
+/// The nearest two of all tips; a gap that is not a number counts as the smallest. Infinitely far
+/// apart for less than two contacts.
+TipPair FindNearestTips(const std::vector<GraspContact>& contacts);
 
 /// How near and how far the tip centres of two fingers can be [m], by pairs of Finger.
 struct TipReach {

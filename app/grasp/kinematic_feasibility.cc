@@ -1,10 +1,9 @@
 #include "app/grasp/kinematic_feasibility.h"
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <string>
 
 #include "app/core/error.h"
-#include "app/core/text.h"
 
 namespace pregrasp {
 namespace {
@@ -29,9 +28,8 @@ KinematicStatus ToStatus(IkStatus status) {
 }  // namespace
 
 void KinematicConfig::Validate() const {
-  if (!(std::isfinite(min_tip_distance) && min_tip_distance >= 0.0)) {
-    throw InputError("grasp", "min_tip_distance", "a length of at least 0 m",
-                     FormatDouble(min_tip_distance));
+  if (reach_starts < 0) {
+    throw InputError("grasp", "reach_starts", "no negative count", std::to_string(reach_starts));
   }
   ik.Validate();
 }
@@ -41,23 +39,29 @@ KinematicResult CalcKinematicFeasibility(const GraspWorld& world, const Kinemati
                                          const std::vector<RigidTransform>& X_WB, Rng rng,
                                          const HandConfiguration* warm_start) {
   KinematicResult result;
-  result.tip_distance = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      const double distance = (TipCentre(contacts[i]) - TipCentre(contacts[k])).norm();
-      if (distance >= result.tip_distance) continue;
-      result.tip_distance = distance;
-      result.nearest_tips = {contacts[k].finger, contacts[i].finger};
-    }
-  }
-  if (result.tip_distance < config.min_tip_distance) {
+  result.nearest_tips = FindNearestTips(contacts);
+  if (!(result.nearest_tips.gap >= 0.0)) {
     result.status = KinematicStatus::kTipsTooClose;
     return result;
   }
   IkProblem problem = world.ToIkProblem(contacts, X_WB);
-  if (warm_start != nullptr) problem.warm_start = *warm_start;
+  if (warm_start != nullptr) {
+    problem.warm_start = *warm_start;
+  } else if (config.ik.collision && config.reach_starts > 0) {
+    IkConfig reach = config.ik;
+    reach.collision = false;
+    reach.slsqp = false;
+    reach.max_starts = std::min(config.reach_starts, config.ik.max_starts);
+    result.ik = world.ik().Solve(reach, problem, rng);
+    result.status = ToStatus(result.ik.status);
+    if (!result.feasible()) return result;
+    problem.warm_start = result.ik.configuration();
+  }
   result.ik = world.ik().Solve(config.ik, problem, rng);
   result.status = ToStatus(result.ik.status);
+  result.reached = result.status == KinematicStatus::kFeasible ||
+                   result.status == KinematicStatus::kCollision ||
+                   result.status == KinematicStatus::kNotCertified;
   return result;
 }
 

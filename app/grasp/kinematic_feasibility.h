@@ -1,15 +1,13 @@
 #pragma once
 
-#include <array>
-
 #include "app/grasp/grasp_world.h"
 
 namespace pregrasp {
 
 struct KinematicConfig {
-  /// Between the centres of two fingertip spheres that touch their contacts [m]; nearer ones no
-  /// hand can place.
-  double min_tip_distance = 0.015;
+  /// Restarts without collision before those with: most sets out of reach fail already there, at a
+  /// fraction of the time. Not where a configuration to begin with is given.
+  int reach_starts = 3;
   IkConfig ik;
 
   void Validate() const;
@@ -18,7 +16,7 @@ struct KinematicConfig {
 /// The first demand that cannot be met.
 enum class KinematicStatus {
   kFeasible,
-  kTipsTooClose,  ///< two contacts leave no room for two fingertips
+  kTipsTooClose,  ///< two fingertip spheres would overlap (TipPair)
   kTipError,      ///< the fingertips do not reach their contacts
   kCone,          ///< they do, but not with their distal axes within the cones
   kCollision,     ///< they do that too, but not without overlap
@@ -29,9 +27,8 @@ struct KinematicResult {
   KinematicStatus status = KinematicStatus::kTipError;
   bool feasible() const { return status == KinematicStatus::kFeasible; }
 
-  /// The two nearest fingertips, and how near their spheres' centres would be [m].
-  std::array<Finger, 2> nearest_tips{};
-  double tip_distance = 0.0;
+  TipPair nearest_tips;
+  bool reached = false;  ///< the hand's reach and the cones allow it, collisions aside, as tried
   /// The hand pose, or the best attempt; left as it is built for kTipsTooClose.
   IkResult ik;
 };

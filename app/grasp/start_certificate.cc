@@ -40,7 +40,7 @@ StartCertificateConfig::StartCertificateConfig() {
   search.max_sets = 200000;
   search.max_solves = 500;
   search.grasp.kinematics.ik.max_starts = 20;
-  search.reach_starts = 20;
+  search.grasp.kinematics.reach_starts = 20;
   search.sampler.slack.environment = search.grasp.kinematics.ik.tip_tolerance;
 }
 

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Raised whenever the test may answer differently for the same inputs.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 // Numbers and words, each followed by a blank: the text that the key is the hash of.
 class KeyText {
@@ -84,10 +84,9 @@ void AddConfig(const SurfacePointsConfig& surface, const StartCertificateConfig&
   const GraspSearchConfig& search = config.search;
   const SamplerConfig& sampler = search.sampler;
   const IkConfig& ik = search.grasp.kinematics.ik;
-  out << surface.spacing << surface.max_points << search.grasp.f_min
-      << search.grasp.kinematics.min_tip_distance << search.max_sets << search.max_solves
-      << search.max_found << search.reach_starts << sampler.near_spacing << sampler.near_offset
-      << sampler.near_share << sampler.opposed_share << sampler.min_tip_distance
+  out << surface.spacing << surface.max_points << search.grasp.f_min << search.max_sets
+      << search.max_solves << search.max_found << search.grasp.kinematics.reach_starts
+      << sampler.near_spacing << sampler.near_offset << sampler.near_share << sampler.opposed_share
       << sampler.slack.object << sampler.slack.environment << std::to_string(config.seed).c_str()
       << ik.tip_tolerance << ik.tip_target << ik.max_cone_deg << ik.min_clearance
       << ik.contact_depth << ik.certify << ik.max_starts << ik.start_candidates << ik.max_iterations

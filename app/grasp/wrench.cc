@@ -171,15 +171,25 @@ const char* WrenchStatusName(WrenchStatus status) {
   return "?";
 }
 
-WrenchStatus CalcWrenchStatus(std::span<const WrenchContact> contacts, const WrenchConfig& config) {
+WrenchStatus CalcWrenchStatus(std::span<const WrenchContact> contacts, const WrenchConfig& config,
+                              Vector6* missing) {
   config.Validate();
   const ScaledContacts scaled(contacts, config.torque_scale);
   AdmissibleWrenches wrenches{scaled.span(), config};
   MinNormPoint point;
-  if (!FindBalance(wrenches, point)) return WrenchStatus::kNoInternalForces;
-  wrenches.load = WeightLoad(config);
-  if (wrenches.load.isZero(0.0) || FindBalance(wrenches, point)) return WrenchStatus::kFeasible;
-  return WrenchStatus::kWeightNotBalanced;
+  WrenchStatus status = WrenchStatus::kNoInternalForces;
+  if (FindBalance(wrenches, point)) {
+    wrenches.load = WeightLoad(config);
+    if (wrenches.load.isZero(0.0) || FindBalance(wrenches, point)) return WrenchStatus::kFeasible;
+    status = WrenchStatus::kWeightNotBalanced;
+  }
+  *missing = -point.v.normalized();
+  return status;
+}
+
+WrenchStatus CalcWrenchStatus(std::span<const WrenchContact> contacts, const WrenchConfig& config) {
+  Vector6 missing;
+  return CalcWrenchStatus(contacts, config, &missing);
 }
 
 WrenchResult CalcWrench(std::span<const WrenchContact> contacts, const WrenchConfig& config) {

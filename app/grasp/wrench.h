@@ -75,6 +75,12 @@ struct WrenchResult {
 /// @throws InputError for bad contacts (none, not finite, a zero normal) or a bad config.
 WrenchStatus CalcWrenchStatus(std::span<const WrenchContact> contacts, const WrenchConfig& config);
 
+/// The same; where the grasp is not feasible, *missing is the unit wrench (force, then torque over
+/// torque_scale) on the object that admissible forces cannot give: the opposite of
+/// WrenchResult::separating.
+WrenchStatus CalcWrenchStatus(std::span<const WrenchContact> contacts, const WrenchConfig& config,
+                              Eigen::Matrix<double, 6, 1>* missing);
+
 /// The same verdict with forces, margin and proof; about a millisecond, most of it the margin.
 WrenchResult CalcWrench(std::span<const WrenchContact> contacts, const WrenchConfig& config);
 

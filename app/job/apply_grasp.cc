@@ -11,13 +11,14 @@ void SetEndOfTrajectory(Application& a) {
   SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
 }
 
-GraspFacts MakeGraspFacts(const JobState& state, int number) {
-  const CompletedGrasp& grasp = state.grasps->grasps[number - 1];
+GraspFacts MakeGraspFacts(const JobState& state, int entry) {
+  const CompletedGrasp& grasp = state.grasps->grasps[entry - 1];
   const GraspResult& result = grasp.result;
   GraspFacts facts;
   facts.path = state.path->rank;
-  facts.number = number;
-  facts.source = "generator";
+  facts.entry = entry;
+  facts.number = grasp.number;
+  facts.source = GraspSourceName(grasp.source);
   facts.feasible = grasp.feasible();
   facts.status = GraspStatusName(result.status);
   facts.raw_status = GraspStatusName(grasp.raw.status);
@@ -66,10 +67,12 @@ void TakeGrasp(Application& a) {
   const int count = static_cast<int>(a.next.grasps->grasps.size());
   Require(count > 0, "a fingertip to be anywhere on the object", "no place for one");
   Require(a.next.num_grasps < count, "a sample that is left", "none");
-  const int number = ++a.next.num_grasps;
-  a.facts.id = fmt::format("path.{}.grasp.{}", a.next.path->rank, number);
+  const int entry = ++a.next.num_grasps;
+  const CompletedGrasp& grasp = a.next.grasps->grasps[entry - 1];
+  a.facts.id = fmt::format("path.{}.{}.{}", a.next.path->rank,
+                           grasp.source == GraspSource::kSearch ? "search" : "grasp", grasp.number);
   SetEndOfTrajectory(a);
-  a.facts.details = MakeGraspFacts(a.next, number);
+  a.facts.details = MakeGraspFacts(a.next, entry);
 }
 
 LiftFacts MakeLiftFacts(const Application& a, int number, const LiftResult& lift) {

@@ -64,18 +64,35 @@ void PlannerConfig::Validate() const {
   }
   placements.Validate();
   completion.grasp.Validate();
+  completion.probes.Validate();
+  search.Validate();
   motion.ik.Validate();
 }
 
+int GraspSet::count(GraspSource source) const {
+  return static_cast<int>(
+      std::count_if(grasps.begin(), grasps.end(),
+                    [&](const CompletedGrasp& grasp) { return grasp.source == source; }));
+}
+
+int GraspSet::count_feasible(GraspSource source) const {
+  return static_cast<int>(std::count_if(
+      grasps.begin(), grasps.end(),
+      [&](const CompletedGrasp& grasp) { return grasp.source == source && grasp.feasible(); }));
+}
+
 double GraspSet::r_suc() const {
-  return grasps.empty() ? 0.0
-                        : static_cast<double>(feasible.size()) / static_cast<double>(grasps.size());
+  const int generated = count(GraspSource::kGenerator);
+  return generated == 0 ? 0.0
+                        : static_cast<double>(count_feasible(GraspSource::kGenerator)) / generated;
 }
 
 double GraspSet::r_suc_raw() const {
-  const auto raw = std::count_if(grasps.begin(), grasps.end(),
-                                 [](const CompletedGrasp& grasp) { return grasp.raw.feasible(); });
-  return grasps.empty() ? 0.0 : static_cast<double>(raw) / static_cast<double>(grasps.size());
+  const int generated = count(GraspSource::kGenerator);
+  const auto raw = std::count_if(grasps.begin(), grasps.end(), [](const CompletedGrasp& grasp) {
+    return grasp.source == GraspSource::kGenerator && grasp.raw.feasible();
+  });
+  return generated == 0 ? 0.0 : static_cast<double>(raw) / generated;
 }
 
 Planner::Planner(std::shared_ptr<const World> world, WorldState start, const PlannerConfig& config,
@@ -173,34 +190,44 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   GraspSet set;
   if (release.conditions.empty()) return set;
   const std::vector<RigidTransform> X_WB = world_->GetPoses(certificate.full.end);
-  const ObjectState seen = MakeObjectState(scorer_->cloud(), X_WB, *environment_, scene().gravity);
-  const EncodedState encoded = generator_->Encode(*generator_structure_, seen);
-  const int count = config_.grasp_samples;
-  set.grasps.resize(count);
-  pool_.ParallelFor(count, [&](int sample, int) {
-    ThrowIfInterrupted();
-    set.grasps[sample] = CompleteGrasp(encoded, X_WB, release, path_rank, sample);
-  });
+  const std::vector<GraspContact> fixed =
+      release.stays ? std::vector<GraspContact>{} : release.pressing;
+  const ContactPlaces places(*grasp_world_, X_WB);
+  CompletionResult completion = pregrasp::CompleteGrasps(
+      places, config_.completion, GenerateGrasps(X_WB, release, path_rank), fixed, pool_);
+  set.grasps = std::move(completion.grasps);
+  if (!completion.hopeless) {
+    GraspSearchConfig search = config_.search;
+    search.grasp.f_min = config_.completion.grasp.f_min;
+    const std::uint64_t seed = Rng(seed_, RngStream::kSecondSource, path_rank).NextU64();
+    int number = 0;
+    for (const GraspResult& found : SearchGrasps(places, search, fixed, seed, pool_).found) {
+      set.grasps.push_back(MakeSearchedGrasp(found, ++number));
+    }
+  }
+  const int count = static_cast<int>(set.grasps.size());
   for (int sample = 0; sample < count; ++sample) {
     if (set.grasps[sample].feasible()) set.feasible.push_back(sample);
   }
   return set;
 }
 
-CompletedGrasp Planner::CompleteGrasp(const EncodedState& encoded,
-                                      const std::vector<RigidTransform>& X_WB,
-                                      const ReleaseResult& release, int path_rank,
-                                      int sample) const {
-  const PlanningContacts conditions = MakePlanningContacts(
-      release.conditions[sample % release.conditions.size()], &X_WB, *environment_);
-  const Rng latent(seed_, RngStream::kGraspLatent, path_rank, sample);
-  const GraspPoints points =
-      generator_->Sample(*generator_structure_, encoded, conditions, 1, latent).front();
-  const Rng completion(seed_, RngStream::kGraspCompletion, path_rank, sample);
-  const std::vector<GraspContact> fixed =
-      release.stays ? std::vector<GraspContact>{} : release.pressing;
-  return pregrasp::CompleteGrasp(*grasp_world_, config_.completion, points, fixed, X_WB,
-                                 completion);
+std::vector<GeneratedGrasp> Planner::GenerateGrasps(const std::vector<RigidTransform>& X_WB,
+                                                    const ReleaseResult& release,
+                                                    int path_rank) const {
+  const ObjectState seen = MakeObjectState(scorer_->cloud(), X_WB, *environment_, scene().gravity);
+  const EncodedState encoded = generator_->Encode(*generator_structure_, seen);
+  std::vector<GeneratedGrasp> grasps;
+  for (int sample = 0; sample < config_.grasp_samples; ++sample) {
+    ThrowIfInterrupted();
+    const PlanningContacts conditions = MakePlanningContacts(
+        release.conditions[sample % release.conditions.size()], &X_WB, *environment_);
+    const Rng latent(seed_, RngStream::kGraspLatent, path_rank, sample);
+    const GraspPoints points =
+        generator_->Sample(*generator_structure_, encoded, conditions, 1, latent).front();
+    grasps.push_back({points, Rng(seed_, RngStream::kGraspCompletion, path_rank, sample)});
+  }
+  return grasps;
 }
 
 std::vector<std::optional<LiftResult>> Planner::LiftGrasps(const Certificate& certificate,

@@ -10,6 +10,7 @@
 #include "app/graph/learned_scorer.h"
 #include "app/graph/placement_search.h"
 #include "app/grasp/grasp_completion.h"
+#include "app/grasp/grasp_search.h"
 #include "app/grasp/lift.h"
 #include "app/motion/hand_motion.h"
 #include "app/trajectory/certify.h"
@@ -28,6 +29,8 @@ struct PlannerConfig {
   PlacementSearchConfig placements;
   CompletionConfig completion;
   int grasp_samples = 20;  ///< latent samples on a certified trajectory
+  /// The second source of grasps, after the generator; bounded so that it takes about 0.3 s.
+  GraspSearchConfig search = MakeSecondSourceConfig();
   LiftConfig lift;
   MotionTiming motion_timing;
   MotionConfig motion;
@@ -48,12 +51,16 @@ struct ReleaseResult : Released {
   std::vector<Placement> conditions;
 };
 
-/// The generated grasps of a certified trajectory, tested.
+/// The grasps to choose from on a certified trajectory, tested: those generated, by sample, then those
+/// that a search found.
 struct GraspSet {
-  std::vector<CompletedGrasp> grasps;  ///< by sample
-  std::vector<int> feasible;           ///< samples of the feasible ones, ascending
+  std::vector<CompletedGrasp> grasps;
+  std::vector<int> feasible;  ///< indices of the feasible ones, ascending
 
-  /// Share that is feasible, with refinement and without; 0 of none.
+  /// How many a source has, and how many of them are feasible.
+  int count(GraspSource source) const;
+  int count_feasible(GraspSource source) const;
+  /// Share of the generated ones that is feasible, with refinement and without; 0 of none.
   double r_suc() const;
   double r_suc_raw() const;
 };
@@ -98,8 +105,8 @@ class Planner {
   /// @param graph  whose mesh says where fingers may touch.
   ReleaseResult Release(const ContactGraph& graph, const Certificate& certificate) const;
 
-  /// The configured number of generated grasps on a certified trajectory; none if there is no
-  /// condition to complete.
+  /// The configured number of generated grasps on a certified trajectory, and those that a search
+  /// finds; none if there is no condition to complete.
   /// @param path_rank  keys the latent samples. @throws Interrupted.
   GraspSet CompleteGrasps(const Certificate& certificate, const ReleaseResult& release,
                           int path_rank) const;
@@ -113,8 +120,8 @@ class Planner {
                         const Vector3& direction_W, const MotionConfig& config) const;
 
  private:
-  CompletedGrasp CompleteGrasp(const EncodedState& encoded, const std::vector<RigidTransform>& X_WB,
-                               const ReleaseResult& release, int path_rank, int sample) const;
+  std::vector<GeneratedGrasp> GenerateGrasps(const std::vector<RigidTransform>& X_WB,
+                                             const ReleaseResult& release, int path_rank) const;
 
   std::shared_ptr<const World> world_;
   WorldState start_;

@@ -88,12 +88,17 @@ void FillGrasps(const JobState& state, RunSummary& summary) {
   if (!state.grasps || state.num_grasps == 0) return;
   summary.r_suc = state.grasps->r_suc();
   summary.r_suc_raw = state.grasps->r_suc_raw();
-  summary.grasps.tried = static_cast<int>(state.grasps->grasps.size());
-  summary.grasps.feasible = static_cast<int>(state.grasps->feasible.size());
+  // The generator's samples count alone; a grasp that the search found is marked by its source.
+  summary.grasps.tried = state.grasps->count(GraspSource::kGenerator);
+  summary.grasps.feasible = state.grasps->count_feasible(GraspSource::kGenerator);
   int lifting = 0;
-  for (const auto& [number, lift] : state.lifts) lifting += lift->held ? 1 : 0;
+  for (const auto& [entry, lift] : state.lifts) {
+    const bool generated = state.grasps->grasps[entry - 1].source == GraspSource::kGenerator;
+    lifting += generated && lift->held ? 1 : 0;
+  }
   summary.grasps.lifting = lifting;
-  summary.r_lift = static_cast<double>(lifting) / *summary.grasps.tried;
+  summary.r_lift =
+      *summary.grasps.tried == 0 ? 0.0 : static_cast<double>(lifting) / *summary.grasps.tried;
   summary.grasps.kept.emplace();
   if (!state.release->stays) {
     for (const GraspContact& contact : state.release->pressing) {
@@ -107,7 +112,7 @@ void FillChosen(const Timeline& timeline, const JobState& state, RunSummary& sum
   const CompletedGrasp& grasp = state.grasps->grasps[state.chosen_grasp - 1];
   const RigidTransform X_WO = state.certificate->full.end.bodies.front().X_WB();
   const WrenchResult& wrench = *grasp.result.wrench;
-  summary.grasps.source = "generator";
+  summary.grasps.source = GraspSourceName(grasp.source);
   summary.grasps.fingers.emplace();
   summary.wrench.mu = timeline.job().scene().fingertips.friction;
   summary.wrench.margin = wrench.margin;

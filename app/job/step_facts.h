@@ -439,7 +439,9 @@ struct GraspContactFacts {
 };
 
 struct GraspFacts {
-  int path = 0, number = 0;
+  int path = 0;
+  int entry = 0;   ///< among all grasps of the trajectory, from 1: what lifts and motions name
+  int number = 0;  ///< among those of its source, from 1
   std::string source;  ///< "generator" or "search"
   bool feasible = false;
   std::string status, raw_status;
@@ -456,6 +458,7 @@ struct GraspFacts {
   template <typename Self, typename Visit>
   static void VisitFields(Self& self, Visit&& visit) {
     visit("path", self.path);
+    visit("entry", self.entry);
     visit("number", self.number);
     visit("source", self.source);
     visit("feasible", self.feasible);

@@ -69,7 +69,7 @@ std::optional<PlanningContacts> FromSampler(const GraspWorld& world, const Conta
 }  // namespace
 
 LabelConfig::LabelConfig() {
-  completion.max_refinements = 16;
+  completion.max_probes = 0;
   completion.max_solves = 2;
   completion.grasp.kinematics.ik.max_starts = 3;
   completion.grasp.kinematics.ik.slsqp = false;
@@ -124,10 +124,11 @@ LabelRecord CalcLabel(const GraspWorld& world, const GraspGenerator& generator,
         structure, MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity));
     const auto grasps = generator.Sample(structure, encoded, seen, config.tries,
                                          Rng(seed, RngStream::kLabelLatent));
+    const ContactPlaces places(world, X_WB);
     for (int i = 0; i < config.tries; ++i) {
       const Rng sample_rng(seed, RngStream::kLabelCompletion, i);
       const CompletedGrasp grasp =
-          CompleteGrasp(world, config.completion, grasps[i], fixed, X_WB, sample_rng);
+          CompleteGrasp(places, config.completion, {grasps[i], sample_rng}, fixed);
       if (!grasp.feasible()) continue;
       ++label.feasible[r];
       if (example != nullptr) {

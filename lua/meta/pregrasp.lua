@@ -538,9 +538,13 @@ function Trajectory:grasps(options) end
 ---@field f_min? number smallest normal force of every finger, 0 to 100 N, within the rules at least 0.5; 0.5
 ---@field may_drop? boolean ring and little may be left out; true
 ---@field max_refinement? number how far a contact may be moved, 0 to 0.1 m, within the rules at most 0.01; 0.01
----@field max_refinements? integer moved sets drawn for a sample, 0 to 10000; 300
----@field max_solves? integer of those, put to inverse kinematics, 0 to 1000; 16
----@field starts? integer restarts of inverse kinematics, 1 to 1000; 20
+---@field max_solves? integer moved sets of a sample that are put to inverse kinematics, 0 to 1000; 16
+---@field patience? integer rounds after which refinement ends where none is feasible, 1 to 1000; 8
+---@field max_probes? integer contact sets drawn where no sample holds: if none does, nothing is refined, 0 to 1e+06; 40000
+---@field starts? integer restarts of inverse kinematics, 1 to 1000; 6
+---@field search_sets? integer contact sets that the search draws after the samples, 0 to 1e+06; 20000
+---@field search_solves? integer of those, put to inverse kinematics, 1 to 10000; 192
+---@field search_found? integer grasps after which it ends, 1 to 1000; 8
 ---@field tip_tolerance? number a fingertip may miss its contact by this, 0.0001 to 0.01 m, within the rules at most 0.0005; 0.002
 ---@field max_cone_deg? number between a distal axis and the inward normal, 1 to 180 deg, within the rules at most 60; 60
 ---@field contact_depth? number a contacting distal link may enter the object by this, 0 to 0.01 m, within the rules at most 0.001; 0.001
@@ -570,11 +574,11 @@ function Trajectory:shot(options) end
 ---@field p_OC Vector3 in the object's frame
 ---@field nhat_O Vector3 outward normal there
 
----The grasps by sample: grasps[1] is the first; nil beyond the last.
+---The grasps by sample, then those that the search found: grasps[1] is the first; nil beyond the last.
 ---@class Grasps
 ---@field count integer
 ---@field num_feasible integer
----@field r_suc number share that is feasible, with refinement
+---@field r_suc number share of the samples that is feasible, with refinement
 ---@field r_suc_raw number and without
 ---@field num_lifting integer of the feasible ones, those whose lift is held
 ---@field r_lift number share of all that are feasible and lift
@@ -593,8 +597,8 @@ function Grasps:best() end
 ---@field reason string "feasible", or the first demand that is not met
 ---@field raw_reason string the same without refinement
 ---@field text string a sentence: which fingers, and what stands in the way
----@field sample integer
----@field source string "generator" or "search"
+---@field sample integer among those of its source
+---@field source "generator"|"search"
 ---@field fingers FingerName[]
 ---@field contacts GraspContact[]
 ---@field moved_mm number the farthest a contact was moved by refinement

@@ -174,7 +174,7 @@ TEST_F(PlannerScriptTest, ATrajectoryIsCertifiedAndItsGraspsHaveReasons) {
     for _, stage in ipairs(t.stages) do
       if stage.thumb.on then assert(#stage.thumb.p_WTargets == 4 and #stage.thumb.nhat_O == 3) end
     end
-    local gr = t:grasps{ samples = 3, max_refinements = 2, max_solves = 1, starts = 2 }
+    local gr = t:grasps{ samples = 3, max_solves = 1, starts = 2, search_sets = 0 }
     print(gr.count, gr[1].step_id, gr[4], gr.r_suc == gr.num_feasible / 3, gr.r_suc_raw <= gr.r_suc)
     local n = 0
     for i, x in gr:all() do
@@ -197,7 +197,7 @@ const char* const kCube = R"(
         { seed = seed })
       local o = pruned(s):paths{ stages = 1 }:next():optimize{ samples = 6, iterations = 2 }
       gr = run(o):certify{ hold_seconds = 0.1 }:grasps{ samples = 4, points = 100, pairs = 300,
-        max_refinement = 0.05, max_refinements = 100, max_solves = 20, starts = 3 }
+        max_refinement = 0.05, max_solves = 20, starts = 3, search_sets = 0 }
       if gr:best() then break end
     end
     local quick = { keyframe_starts = 3, frame_starts = 1, smoothing_sweeps = 1, fps = 5 }
@@ -217,6 +217,22 @@ TEST_F(PlannerScriptTest, AFeasibleGraspHasForcesAPoseAndALift) {
       assert(x.lift == nil and not pcall(x.motion, x))
     end end)")),
             "4\ttrue\ttrue\ttrue\ntrue\ttrue\ttrue\ttrue\ttrue\nboolean\ttrue\ttrue\n");
+}
+
+TEST_F(PlannerScriptTest, WhatTheSearchFindsComesAfterTheSamplesAndSaysSo) {
+  EXPECT_EQ(Script(kCube + std::string(R"(
+    local t = run(pruned(s):paths{ stages = 1 }:next():optimize{ samples = 6, iterations = 2 }):certify{ hold_seconds = 0.1 }
+    local both = t:grasps{ samples = 2, points = 100, pairs = 300, max_solves = 1, starts = 2, search_found = 1 }
+    local feasible, searched = 0, 0
+    for i, x in both:all() do
+      local found = i > 2
+      assert(x.source == (found and "search" or "generator") and x.sample == (found and i - 2 or i))
+      assert(x.step_id:find(found and "^path%.1%.search%.%d" or "^path%.1%.grasp%.%d"), x.step_id)
+      assert(x.feasible or not found)
+      if found then searched = searched + 1 elseif x.feasible then feasible = feasible + 1 end
+    end
+    print(searched >= 1, both.count == 2 + searched, both.num_feasible == feasible + searched, both.r_suc == feasible / 2))")),
+            "true\ttrue\ttrue\ttrue\n");
 }
 
 TEST_F(PlannerScriptTest, AHandMotionIsSolvedKeyByKeyAndFrameByFrame) {
@@ -307,7 +323,7 @@ TEST_F(PlannerScriptTest, TheSameSeedGivesTheSameStepsForAnyThreads) {
     const std::string text = Script(R"(
       local o = run(optimizer())
       for _, r in ipairs(o:rollouts()) do print(("%a %a"):format(r.cost, r.weight)) end
-      for _, x in o:certify{ hold_seconds = 0.2 }:grasps{ samples = 2, max_refinements = 2, max_solves = 1, starts = 2 }:all() do
+      for _, x in o:certify{ hold_seconds = 0.2 }:grasps{ samples = 2, max_solves = 1, starts = 2, search_sets = 4096 }:all() do
         print(x.reason, x.moved_mm)
       end)");
     if (first.empty()) first = text;

@@ -46,7 +46,7 @@ class RunCommandTest : public testing::Test {
   std::vector<std::string> Quick(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments =
         Arguments({"--paths", "1", "--set", "mppi.iterations=2", "--set", "grasps.samples=2",
-                   "--set", "grasps.max_refinements=1", "--set", "grasps.starts=2"});
+                   "--set", "grasps.search_sets=4096", "--set", "grasps.starts=2"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -213,7 +213,7 @@ std::string ScriptText(int paths) {
 TEST_F(RunCommandTest, AScriptOfTheSameCommandsLeavesTheSameRunWhereNothingSucceeds) {
   std::ofstream(folder_ / "same.lua") << ScriptText(2);
   const std::string settings =
-      "mppi.iterations=2 grasps.samples=2 grasps.max_refinements=1 grasps.starts=2";
+      "mppi.iterations=2 grasps.samples=2 grasps.max_solves=1 grasps.starts=2";
   std::vector<std::string> arguments = Arguments({"--paths", "2"});
   std::istringstream words(settings);
   for (std::string word; words >> word;) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "app/core/error.h"
 #include "app/grasp/grasp_search.h"
 #include "app/hand/certificate.h"
@@ -70,7 +73,8 @@ TEST(FeasibleGraspTest, AFoundGraspStandsUpToEveryDemandCheckedByHand) {
     EXPECT_GE(cosine, std::cos(DegToRad(60.0)) - 1e-9);
     for (const GraspContact& other : grasp.contacts) {
       if (other.finger == contact.finger) continue;
-      EXPECT_GE((TipCentre(contact) - TipCentre(other)).norm(), 0.015);
+      EXPECT_GE((TipCentre(contact) - TipCentre(other)).norm(),
+                FingertipRadius(contact.finger) + FingertipRadius(other.finger));
     }
   }
   EXPECT_TRUE(((ik.q - hand.q_lower).array() >= 0.0).all());
@@ -101,7 +105,7 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
                     OnSide(Finger::kMiddle, -1, 0.01, 0)}),
             GraspStatus::kTipsTooClose);
   EXPECT_EQ(sentence,
-            "thumb, index, middle: the fingertips of index and middle would be 10.0 mm apart");
+            "thumb, index, middle: the fingertips of index and middle would overlap by 8.0 mm");
   EXPECT_EQ(status({OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, 1, 0.02, 0),
                     OnSide(Finger::kMiddle, 1, -0.02, 0)}),
             GraspStatus::kNoInternalForces);
@@ -128,6 +132,68 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
                     OnSide(Finger::kMiddle, -1, -0.012, -0.099)}),
             GraspStatus::kCollision);
   EXPECT_NE(sentence.find("would overlap table by"), std::string::npos) << sentence;
+}
+
+TEST(FeasibleGraspTest, AFailureSaysAsDataWhatStandsInTheWay) {
+  const GraspWorld& world = CartonWorld();
+  GraspConfig config;
+  config.kinematics.ik.max_starts = 5;
+  const auto test = [&](const std::vector<GraspContact>& contacts) {
+    return TestContacts(world, config, contacts, world.StartPoses(), Rng(1, RngStream::kTest));
+  };
+  const GraspResult close = test({OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, -1, 0, 0),
+                                  OnSide(Finger::kMiddle, -1, 0.01, 0)});
+  ASSERT_TRUE(close.fault.tips.has_value());
+  EXPECT_EQ(close.fault.tips->fingers, (std::array<Finger, 2>{Finger::kIndex, Finger::kMiddle}));
+  EXPECT_NEAR(close.fault.tips->gap, -0.008, 1e-12);
+  EXPECT_FALSE(close.fault.missing_wrench || close.fault.overlap || close.fault.finger);
+
+  // All three push along -y: what is missing is along +y, and no admissible force has any of it.
+  const GraspResult loose =
+      test({OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, 1, 0.02, 0),
+            OnSide(Finger::kMiddle, 1, -0.02, 0)});
+  ASSERT_EQ(loose.status, GraspStatus::kNoInternalForces);
+  ASSERT_TRUE(loose.fault.missing_wrench.has_value());
+  const Vector6& missing = *loose.fault.missing_wrench;
+  EXPECT_NEAR(missing.norm(), 1.0, 1e-12);
+  EXPECT_GT(missing[1], 0.5);
+  Rng rng(4);
+  for (int i = 0; i < 2000; ++i) {
+    Vector6 wrench = Vector6::Zero();
+    for (const GraspContact& contact : loose.contacts) {
+      const double normal = rng.Uniform(0.5, 12.0), across = 0.8 * normal * rng.Uniform();
+      const double angle = rng.Uniform(0.0, 2.0 * kPi);
+      const Vector3 f(across * std::cos(angle), -normal, across * std::sin(angle));
+      wrench.head<3>() += f;
+      wrench.tail<3>() += contact.p_OC.cross(f) / world.object_radius();
+    }
+    EXPECT_LT(missing.dot(wrench), 0.0);
+  }
+
+  const GraspResult low =
+      test({OnSide(Finger::kThumb, 1, 0, -0.099), OnSide(Finger::kIndex, -1, 0.012, -0.099),
+            OnSide(Finger::kMiddle, -1, -0.012, -0.099)});
+  ASSERT_EQ(low.status, GraspStatus::kCollision);
+  ASSERT_TRUE(low.fault.overlap.has_value());
+  EXPECT_EQ(low.fault.overlap->other, "table");
+  EXPECT_FALSE(low.fault.overlap->link.empty());
+  EXPECT_GT(low.fault.overlap->depth, 0.0);
+
+  const GraspResult far =
+      test({OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, -1, 0, 0.085),
+            OnSide(Finger::kMiddle, -1, 0, -0.085)});
+  ASSERT_EQ(far.status, GraspStatus::kTipError);
+  EXPECT_TRUE(far.fault.finger.has_value());
+}
+
+TEST(FeasibleGraspTest, ContactsThatAreNotNumbersNeverPass) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<GraspContact> contacts = CartonGrasp().contacts;
+  contacts.back().p_OC.x() = nan;
+  const GraspWorld& world = CartonWorld();
+  EXPECT_TRUE(std::isnan(FindNearestTips(contacts).gap));
+  EXPECT_EQ(TestContacts(world, {}, contacts, world.StartPoses(), Rng(1, RngStream::kTest)).status,
+            GraspStatus::kTipsTooClose);
 }
 
 TEST(FeasibleGraspTest, RingAndLittleMayBeDroppedButNoOther) {
@@ -230,7 +296,7 @@ TEST(ContactSamplerTest, SetsArePlausible) {
           const int g = static_cast<int>(b.finger);
           if (f >= g) continue;
           const double distance = (TipCentre(a) - TipCentre(b)).norm();
-          EXPECT_GE(distance, 0.015);
+          EXPECT_GE(distance, FingertipRadius(a.finger) + FingertipRadius(b.finger));
           EXPECT_LE(distance, world.reach().farthest[f][g]);
           if (near_share == 1.0 && f > 0) {
             EXPECT_LE(distance, 0.03 * (g - f) + 0.01 + 1e-12);

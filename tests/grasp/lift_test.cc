@@ -40,7 +40,7 @@ struct LiftProblem {
         {Finger::kIndex, Vector3(0.011, half_width, z), Vector3::UnitY()},
         {Finger::kMiddle, Vector3(-0.011, half_width, z), Vector3::UnitY()}};
     return TestContacts(grasp_world, GraspConfig(), contacts, grasp_world.StartPoses(),
-                        Rng(1, RngStream::kGrasp));
+                        Rng(1, RngStream::kTest));
   }
 
   LiftResult Lift(const GraspResult& grasp) const { return Lift(grasp, world.InitialState()); }

@@ -28,7 +28,8 @@ class RunPolicyTest : public testing::Test {
     setup_.config.mppi.samples = 6;
     setup_.config.mppi.iterations = 3;
     setup_.config.grasp_samples = 2;
-    setup_.config.completion.max_refinements = 2;
+    setup_.config.search.max_sets = 4096;
+    setup_.config.search.max_solves = 16;
     setup_.config.completion.max_solves = 1;
     setup_.config.completion.grasp.kinematics.ik.max_starts = 2;
     run_.paths = 2;

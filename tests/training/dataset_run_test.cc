@@ -37,7 +37,7 @@ ItemConfig SmallConfig() {
   config.growth.search.max_solves = 16;
   config.labels.per_scene = 3;
   config.labels.tries = 1;
-  config.labels.completion.max_refinements = 2;
+  config.labels.completion.max_solves = 1;
   return config;
 }
 

@@ -12,7 +12,7 @@ TEST(LabelsTest, AfterTwoReliefsWithoutAnyNoSmallerOneHasAny) {
       GraspGenerator::Load(PREGRASP_SOURCE_DIR "/assets/weights/generator.safetensors");
   LabelConfig config;
   config.tries = 2;
-  config.completion.max_refinements = 4;
+  config.completion.max_solves = 2;
   ItemConfig items;
   int labels = 0, above_zero = 0, cut_short = 0;
   for (std::int64_t index = 0; index < 4; ++index) {
