@@ -6,6 +6,7 @@
 
 #include "app/grasp/start_certificate.h"
 #include "app/grasp/wrench.h"
+#include "tests/bench/generated_grasps.h"
 #include "tests/grasp/contact_sets.h"
 #include "tests/grasp/grasp_scenes.h"
 #include "tests/grasp/qhull_margin.h"
@@ -47,7 +48,8 @@ void WrenchVerdict(benchmark::State& state) {
 }
 BENCHMARK(WrenchVerdict)->Unit(benchmark::kMillisecond);
 
-// GLPK's simplex with inscribed pyramids, stopping at the first condition that fails, as ours does.
+// GLPK's simplex with inscribed pyramids, stopping at the first condition that
+// fails, as ours does.
 void WrenchVerdictByLp(benchmark::State& state) {
   const std::vector<Question> questions = MakeQuestions(1000);
   const int facets = static_cast<int>(state.range(0));
@@ -113,7 +115,8 @@ void MarginByQhull(benchmark::State& state) {
 }
 BENCHMARK(MarginByQhull)->Unit(benchmark::kMillisecond);
 
-// Feasible grasps found by search, on one thread; items are grasps. The ruler overhangs 6 cm.
+// Feasible grasps found by search, on one thread; items are grasps. The ruler
+// overhangs 6 cm.
 void GraspSearch(benchmark::State& state, const Scene& scene) {
   const GraspWorld world(scene, ShadowHand());
   ThreadPool pool(1);
@@ -145,7 +148,8 @@ void BuildGraspWorld(benchmark::State& state) {
 }
 BENCHMARK(BuildGraspWorld)->Unit(benchmark::kMillisecond);
 
-// The verdict on a start that a proof decides, and on one that only a whole search can.
+// The verdict on a start that a proof decides, and on one that only a whole
+// search can.
 void StartCertificateOf(benchmark::State& state, const Scene& scene) {
   const GraspWorld world(scene, ShadowHand());
   ThreadPool pool(1);
@@ -158,7 +162,95 @@ BENCHMARK_CAPTURE(StartCertificateOf, book, BookScene())->Unit(benchmark::kMilli
 BENCHMARK_CAPTURE(StartCertificateOf, keyboard_at_wall, KeyboardScene(0.01))
     ->Unit(benchmark::kMillisecond);
 
+struct CompletionCounts {
+  int samples = 0, feasible = 0, raw = 0, too_close = 0;
+
+  CompletionCounts& operator+=(const CompletedGrasp& grasp) {
+    ++samples;
+    feasible += grasp.feasible();
+    raw += grasp.raw.feasible();
+    too_close += grasp.raw.status == GraspStatus::kTipsTooClose;
+    return *this;
+  }
+};
+
+// Twenty generated grasps, projected, refined and tested on one thread, and how
+// many of them are feasible. A start where nothing can hold, then poses in
+// which search finds grasps.
+void Completion(benchmark::State& state, const Scene& scene,
+                const std::vector<GraspContact>& pressing) {
+  GeneratedGrasps generated(scene, pressing);
+  constexpr int kSeeds = 5;
+  std::vector<std::vector<GeneratedGrasp>> draws;
+  ThreadPool pool(1);
+  for (int seed = 1; seed <= kSeeds; ++seed) draws.push_back(generated.Draw(seed));
+  CompletionCounts counts;
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const std::vector<GeneratedGrasp>& draw = draws[next++ % kSeeds];
+    const ContactPlaces places(generated.world(), generated.world().StartPoses());
+    for (const CompletedGrasp& grasp :
+         CompleteGrasps(places, {}, draw, generated.pressing(), pool).grasps) {
+      counts += grasp;
+    }
+  }
+  const auto samples = static_cast<double>(counts.samples);
+  state.counters["r_suc"] = counts.feasible / samples;
+  state.counters["r_suc_raw"] = counts.raw / samples;
+  state.counters["too_close"] = counts.too_close / samples;
+}
+
+// The search that follows, at the same poses.
+void SecondSource(benchmark::State& state, const Scene& scene,
+                  const std::vector<GraspContact>& pressing) {
+  const GraspWorld world(scene, ShadowHand());
+  ThreadPool pool(1);
+  std::uint64_t seed = 0;
+  double found = 0.0;
+  for (auto _ : state) {
+    const ContactPlaces places(world, world.StartPoses());
+    found += SearchGrasps(places, MakeSecondSourceConfig(), pressing, ++seed, pool).stats.feasible;
+  }
+  state.counters["found"] = found / static_cast<double>(state.iterations());
+}
+
+void CompletionBenchmark(const std::string& name, const Scene& scene,
+                         const std::vector<GraspContact>& pressing = {}) {
+  benchmark::RegisterBenchmark(("SecondSource/" + name).c_str(), SecondSource, scene, pressing)
+      ->Iterations(5)
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark(("Completion/" + name).c_str(), Completion, scene, pressing)
+      ->Iterations(5)
+      ->Unit(benchmark::kMillisecond);
+}
+
+void RegisterCompletions() {
+  const Vector3 card(0.200, 0.250, 0.003);
+  CompletionBenchmark("card_flat", FlatScene(card, 0.03, -0.01));
+  CompletionBenchmark("card_40mm_over_edge", FlatScene(card, 0.03, 0.04));
+  CompletionBenchmark("card_80mm_over_edge", FlatScene(card, 0.03, 0.08));
+  CompletionBenchmark("card_free", Moved(FlatScene(card, 0.03, 0.0), {0, 0, 0.5}));
+  CompletionBenchmark("ruler_60mm_over_edge", RulerScene(0.06));
+  CompletionBenchmark("board_50mm_over_shelf", BoardScene(0.05));
+  CompletionBenchmark("keyboard_at_wall", KeyboardScene(0.01));
+  CompletionBenchmark("keyboard_36mm_out", Moved(KeyboardScene(0.01), {0.046, 0, 0}));
+  CompletionBenchmark("keyboard_72mm_out", Moved(KeyboardScene(0.01), {0.082, 0, 0}));
+  CompletionBenchmark("keyboard_free", Moved(KeyboardScene(0.01), {0, 0, 0.5}));
+  CompletionBenchmark("carton_in_row", CartonScene());
+  CompletionBenchmark("carton_35mm_out", Moved(CartonScene(), {0.035, 0, 0}));
+  CompletionBenchmark("book_in_row", BookScene());
+  const GraspContact on_top{Finger::kIndex, {-0.03, 0, 0.115}, Vector3::UnitZ()};
+  for (const int tilt : {8, 16, 24}) {
+    CompletionBenchmark("book_pressed_" + std::to_string(tilt) + "_degrees",
+                        Tilted(BookScene(), tilt, {0.0775, 0, 0}), {on_top});
+  }
+}
+
 }  // namespace
 }  // namespace pregrasp
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  pregrasp::RegisterCompletions();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}
