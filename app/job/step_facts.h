@@ -344,7 +344,7 @@ struct IterationFacts {
   int iteration = 0, limit = 0;
   double sigma = 0.0;  ///< of this iteration's noise
   double best_cost = 0.0, mean_cost = 0.0;
-  CostFacts best;  ///< of all iterations
+  CostFacts best;          ///< of all iterations
   bool converged = false;  ///< it ended by patience
   std::string end;         ///< why it ended: "", "patience" or "limit"
   std::vector<RolloutFacts> rollouts;

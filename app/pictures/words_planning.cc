@@ -64,17 +64,17 @@ Lines Describe(const Scene& /*scene*/, const ScoreFacts& facts) {
 Lines Describe(const Scene& /*scene*/, const PruneFacts& facts) {
   Lines lines;
   if (facts.cut == "context") {
-    lines = {fmt::format("The {:g} % with the best score among the surroundings stay: with one of "
-                         "these a path may begin.",
-                         facts.top_percent),
-             fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_c,
-                         facts.num_tied_c)};
+    lines = {
+        fmt::format("The {:g} % with the best score among the surroundings stay: with one of "
+                    "these a path may begin.",
+                    facts.top_percent),
+        fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_c, facts.num_tied_c)};
   } else if (facts.cut == "free") {
-    lines = {fmt::format("So do the {:g} % with the best score without surroundings: they may come "
-                         "later, when the object has moved.",
-                         facts.top_percent),
-             fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_n,
-                         facts.num_tied_n)};
+    lines = {
+        fmt::format("So do the {:g} % with the best score without surroundings: they may come "
+                    "later, when the object has moved.",
+                    facts.top_percent),
+        fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_n, facts.num_tied_n)};
   } else {
     lines = {
         "States that share a triangle are connected: one finger stays while the other "

@@ -165,10 +165,9 @@ MotionlessEnd PressWithoutMoving(double overhang) {
   end.feasible = static_cast<int>(grasps.feasible.size());
   GraspSearchConfig search;
   search.max_sets = 20000;
-  end.searched =
-      !SearchGrasps(planner.grasp_world(), search, {},
-                    planner.world().GetPoses(end.certificate.full.end), 1, job.pool())
-           .found.empty();
+  end.searched = !SearchGrasps(planner.grasp_world(), search, {},
+                               planner.world().GetPoses(end.certificate.full.end), 1, job.pool())
+                      .found.empty();
   return end;
 }
 
