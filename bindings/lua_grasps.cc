@@ -7,8 +7,8 @@ namespace pregrasp {
 namespace {
 
 const Schema kLift{"Lift",
-                   {"held", "reasons", "text", "height", "shift_mm", "turn_deg", "slip_mm", "direction_W",
-                    "pushes", "soft", "stiff", "step_id"}};
+                   {"held", "reasons", "text", "height", "shift_mm", "turn_deg", "slip_mm",
+                    "direction_W", "pushes", "soft", "stiff", "step_id"}};
 
 constexpr int kGraspKib = 20;
 
@@ -81,7 +81,7 @@ bool GraspFeasible(LuaGrasp& grasp) { return grasp.facts().feasible; }
 std::string GraspReason(LuaGrasp& grasp) { return grasp.facts().status; }
 std::string GraspRawReason(LuaGrasp& grasp) { return grasp.facts().raw_status; }
 std::string GraspText(LuaGrasp& grasp) { return grasp.facts().sentence; }
-std::string GraspSource(LuaGrasp& grasp) { return grasp.facts().source; }
+std::string SourceOfGrasp(LuaGrasp& grasp) { return grasp.facts().source; }
 int GraspSample(LuaGrasp& grasp) { return grasp.facts().number; }
 double GraspMoved(LuaGrasp& grasp) { return grasp.facts().moved_mm; }
 int GraspRefinements(LuaGrasp& grasp) { return grasp.facts().refinements; }
@@ -200,7 +200,7 @@ const ClassInfo& GraspClass() {
                                   Property<&GraspRawReason>("raw_reason"),
                                   Property<&GraspText>("text"),
                                   Property<&GraspSample>("sample"),
-                                  Property<&GraspSource>("source"),
+                                  Property<&SourceOfGrasp>("source"),
                                   Property<&GraspFingers>("fingers"),
                                   Property<&GraspContacts>("contacts"),
                                   Property<&GraspMoved>("moved_mm"),

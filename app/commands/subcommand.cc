@@ -1,7 +1,6 @@
 #include "app/commands/subcommand.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <optional>
@@ -49,11 +48,13 @@ Option Subcommand::AddFlag(const std::string& name, bool& value, const std::stri
 
 Option Subcommand::AddSeed(std::uint64_t& seed, const std::string& text) const {
   const CLI::Validator digits(
-      [](const std::string& value) {
-        const bool whole = !value.empty() && std::all_of(value.begin(), value.end(), [](char c) {
-          return c >= '0' && c <= '9';
-        });
-        return whole ? std::string() : "expected a whole number from 0, got \"" + value + '"';
+      [](const std::string& text) {
+        std::uint64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [rest, error] = std::from_chars(text.data(), end, value);
+        const bool fits = error == std::errc() && rest == end;
+        return fits ? std::string()
+                    : "expected a whole number from 0 to 2^64 - 1, got \"" + text + '"';
       },
       "N", "seed");
   return Option(*app_->add_option("--seed", seed, text)->capture_default_str()->check(digits));

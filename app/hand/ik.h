@@ -16,7 +16,7 @@ namespace pregrasp {
 /// What counts as a solution, and how hard to look for one. The bounds are those of kinematic
 /// feasibility in the project's definitions; the search's numbers are measured (tests/bench).
 struct IkConfig {
-  double tip_tolerance = 2e-3;  ///< a fingertip may be this far from touching its contact [m]
+  double tip_tolerance = 5e-4;  ///< a fingertip may be this far from touching its contact [m]
   double tip_target = 1e-4;     ///< what the solvers aim for [m]: a tenth of a millimetre is below
                                 ///< every other error of a grasp
   double max_cone_deg = 60.0;   ///< between distal +z and the inward normal; 180 asks nothing. From

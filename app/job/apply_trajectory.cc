@@ -132,11 +132,14 @@ CertifyFacts MakeCertifyFacts(const JobState& state) {
 
 RobustFacts MakeRobustFacts(Application& a) {
   const PlanOutcome& nominal = a.next.certificate->full;
-  const RobustResult result = a.job.robust_worlds().Test(
-      a.next.planner->environment(), a.next.start, nominal.plan, a.next.mppi->config().timing,
-      a.next.config.certify, nominal.end);
-  RobustFacts facts{static_cast<int>(result.outcomes.size()), result.held,
-                    1e3 * result.worst_shift, result.worst_turn_deg, {}};
+  const RobustResult result =
+      a.job.robust_worlds().Test(a.next.planner->environment(), a.next.start, nominal.plan,
+                                 a.next.mppi->config().timing, a.next.config.certify, nominal.end);
+  RobustFacts facts{static_cast<int>(result.outcomes.size()),
+                    result.held,
+                    1e3 * result.worst_shift,
+                    result.worst_turn_deg,
+                    {}};
   for (const RobustOutcome& outcome : result.outcomes) {
     if (!outcome.held) facts.elsewhere.emplace_back(RobustChangeName(outcome.change));
   }

@@ -51,8 +51,8 @@ struct ReleaseResult : Released {
   std::vector<Placement> conditions;
 };
 
-/// The grasps to choose from on a certified trajectory, tested: those generated, by sample, then those
-/// that a search found.
+/// The grasps to choose from on a certified trajectory, tested: those generated, by sample, then
+/// those that a search found.
 struct GraspSet {
   std::vector<CompletedGrasp> grasps;
   std::vector<int> feasible;  ///< indices of the feasible ones, ascending

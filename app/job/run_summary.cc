@@ -4,6 +4,7 @@
 #include <set>
 
 #include "app/job/motion_measure.h"
+#include "app/job/planner_settings.h"
 
 namespace pregrasp {
 namespace {

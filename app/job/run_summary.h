@@ -227,8 +227,9 @@ struct RunSummary {
 /// memory and the hash are left to who writes the files.
 RunSummary Summarize(const Timeline& timeline, const Timeline::Node& node);
 
-/// The status that `node` has reached: the furthest stage whose outcome is decided there. None where
-/// nothing was planned, or where a stage is under way: a grasp may be among those not tried yet.
+/// The status that `node` has reached: the furthest stage whose outcome is decided there. None
+/// where nothing was planned, or where a stage is under way: a grasp may be among those not tried
+/// yet.
 std::optional<std::string> StatusAt(const Timeline& timeline, const Timeline::Node& node);
 
 /// The node that has come furthest towards "ok"; of equals the one with more feasible grasps, then

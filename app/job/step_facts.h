@@ -344,7 +344,7 @@ struct IterationFacts {
   int iteration = 0, limit = 0;
   double sigma = 0.0;  ///< of this iteration's noise
   double best_cost = 0.0, mean_cost = 0.0;
-  CostFacts best;  ///< of all iterations
+  CostFacts best;          ///< of all iterations
   bool converged = false;  ///< it ended by patience
   std::string end;         ///< why it ended: "", "patience" or "limit"
   std::vector<RolloutFacts> rollouts;
@@ -391,8 +391,8 @@ struct CertifyFacts {
   bool stays_when_released = false;
   double seconds = 0.0;
   double max_speed = 0.0, max_force_N = 0.0, max_penetration_mm = 0.0, max_tip_overlap_mm = 0.0;
-  double unconverged_seconds = 0.0;  ///< in steps that the contact solver left unfinished
-  double unresolved_mm = 0.0;        ///< the overlap that these leave, summed
+  double unconverged_seconds = 0.0;   ///< in steps that the contact solver left unfinished
+  double unresolved_mm = 0.0;         ///< the overlap that these leave, summed
   std::optional<RobustFacts> robust;  ///< of certified plans
   std::vector<PlaceFacts> pressing;
   std::vector<StageFacts> stages;
@@ -440,8 +440,8 @@ struct GraspContactFacts {
 
 struct GraspFacts {
   int path = 0;
-  int entry = 0;   ///< among all grasps of the trajectory, from 1: what lifts and motions name
-  int number = 0;  ///< among those of its source, from 1
+  int entry = 0;       ///< among all grasps of the trajectory, from 1: what lifts and motions name
+  int number = 0;      ///< among those of its source, from 1
   std::string source;  ///< "generator" or "search"
   bool feasible = false;
   std::string status, raw_status;

@@ -18,7 +18,7 @@ const char* KeyframeOrderName(KeyframeOrder order);
 /// What may be given up, in this order, when a frame has no strict solution; each rung keeps what
 /// the rungs before it gave up. The surroundings are never entered.
 enum class LooseningRung {
-  kNone,          ///< 2 mm at the tips, 60 degree cones, no overlap
+  kNone,          ///< 0.5 mm at the tips, 60 degree cones, no overlap
   kTip5mm,        ///< tips within 5 mm
   kCone80,        ///< cones of 80 degrees
   kConeOff,       ///< no cones

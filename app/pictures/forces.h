@@ -19,7 +19,7 @@ ForceSplit SplitFingerForce(const Scene& scene, const Quaternion& q_WO, const Fi
 
 /// What one body of the scene does to the object, over all its contact points.
 struct SupportForce {
-  BodyIndex body;
+  int body = 0;                   ///< in Scene::bodies
   Vector3 f_W = Vector3::Zero();  ///< sum on the object [N]
   ForceSplit split;               ///< sums of the points' parts
   bool slipping = false;          ///< friction is used up (over 99 %)

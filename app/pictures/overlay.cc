@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "app/hand/hand_shapes.h"
 #include "render/palette.h"
@@ -164,12 +165,20 @@ class Maker {
   const FactsSource& steps_;
 };
 
-// Whether `step` is the first of its path's grasps that is as feasible as it is.
-bool IsFirstOfItsKind(const StepFacts& step, const GraspFacts& grasp, const FactsSource& steps) {
-  for (const StepFacts* at = &step; at->command.verb == Verb::kGrasp;) {
+// What one grasp or lift of a path has in common with others that look alike.
+std::array<int, 4> KindOf(const GraspFacts& grasp) { return {grasp.feasible}; }
+std::array<int, 4> KindOf(const LiftFacts& lift) {
+  return {lift.held, lift.pushes, lift.soft, lift.stiff};
+}
+
+// Whether no step of the same stage before `step` is of its kind.
+template <typename Facts>
+bool IsFirstOfItsKind(const StepFacts& step, const FactsSource& steps) {
+  const auto kind = KindOf(std::get<Facts>(step.details));
+  for (const StepFacts* at = &step; at->command.verb == step.command.verb;) {
     at = &steps.Get(at->command.node);
-    const auto* earlier = std::get_if<GraspFacts>(&at->details);
-    if (earlier != nullptr && earlier->feasible == grasp.feasible) return false;
+    const auto* earlier = std::get_if<Facts>(&at->details);
+    if (earlier != nullptr && KindOf(*earlier) == kind) return false;
   }
   return true;
 }
@@ -195,7 +204,6 @@ bool IsKeyStep(const StepFacts& step, const FactsSource& steps) {
     case Verb::kScore:
     case Verb::kPath:
     case Verb::kCertify:
-    case Verb::kLift:
     case Verb::kKeyframe:
       return true;
     case Verb::kPrune:
@@ -205,7 +213,9 @@ bool IsKeyStep(const StepFacts& step, const FactsSource& steps) {
       return facts.iteration == 1 || facts.iteration % kEvery == 0 || !facts.end.empty();
     }
     case Verb::kGrasp:
-      return IsFirstOfItsKind(step, std::get<GraspFacts>(step.details), steps);
+      return IsFirstOfItsKind<GraspFacts>(step, steps);
+    case Verb::kLift:
+      return IsFirstOfItsKind<LiftFacts>(step, steps);
     default:
       return false;
   }

@@ -37,7 +37,7 @@ const StepFacts& FindStart(const StepFacts& step, const FactsSource& steps);
 
 /// Whether a run with PictureMode::kKey draws the step unasked: the start, scores, the pruned
 /// graph, paths, every fifth iteration and the last, certificates, of each path the first grasp
-/// that is feasible and the first that is not, lifts, keyframes.
+/// that is feasible and the first that is not, of its lifts the first of each result, keyframes.
 bool IsKeyStep(const StepFacts& step, const FactsSource& steps);
 
 }  // namespace pregrasp

@@ -64,17 +64,17 @@ Lines Describe(const Scene& /*scene*/, const ScoreFacts& facts) {
 Lines Describe(const Scene& /*scene*/, const PruneFacts& facts) {
   Lines lines;
   if (facts.cut == "context") {
-    lines = {fmt::format("The {:g} % with the best score among the surroundings stay: with one of "
-                         "these a path may begin.",
-                         facts.top_percent),
-             fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_c,
-                         facts.num_tied_c)};
+    lines = {
+        fmt::format("The {:g} % with the best score among the surroundings stay: with one of "
+                    "these a path may begin.",
+                    facts.top_percent),
+        fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_c, facts.num_tied_c)};
   } else if (facts.cut == "free") {
-    lines = {fmt::format("So do the {:g} % with the best score without surroundings: they may come "
-                         "later, when the object has moved.",
-                         facts.top_percent),
-             fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_n,
-                         facts.num_tied_n)};
+    lines = {
+        fmt::format("So do the {:g} % with the best score without surroundings: they may come "
+                    "later, when the object has moved.",
+                    facts.top_percent),
+        fmt::format("threshold\t{:.3f}, {} states have it", facts.threshold_n, facts.num_tied_n)};
   } else {
     lines = {
         "States that share a triangle are connected: one finger stays while the other "
@@ -180,8 +180,8 @@ Lines Describe(const Scene& /*scene*/, const GraspFacts& facts) {
 Lines Describe(const Scene& /*scene*/, const LiftFacts& facts) {
   Lines lines = {facts.sentence};
   lines.push_back(fmt::format("came\t{:.1f} mm", 1e3 * facts.height_m));
-  lines.push_back(fmt::format("off its way\t{:.1f} mm, {:.1f} deg at most", facts.shift_mm,
-                              facts.turn_deg));
+  lines.push_back(
+      fmt::format("off its way\t{:.1f} mm, {:.1f} deg at most", facts.shift_mm, facts.turn_deg));
   lines.push_back(fmt::format("fingertips slid\t{:.1f} mm", facts.slip_mm));
   if (facts.held) {
     lines.push_back(fmt::format("pushes withstood\t{} of 6", facts.pushes));

@@ -18,12 +18,12 @@ struct CertifyConfig {
 
 /// Why a plan is not certified.
 enum class CertifyReason {
-  kDiverged,       ///< the object left the scene
-  kTipOverlap,     ///< a fingertip sphere overlaps the surroundings by more than 0.3 mm at some step
-  kTipsTooClose,   ///< the two fingertip spheres overlap at some step
-  kDoesNotHold,    ///< the object moves on in the hold
-  kNeverTouches,   ///< no finger ever touches the object
-  kNotConverged,   ///< contact forces were not found to the accuracy that a verdict needs
+  kDiverged,      ///< the object left the scene
+  kTipOverlap,    ///< a fingertip sphere overlaps the surroundings by more than 0.3 mm at some step
+  kTipsTooClose,  ///< the two fingertip spheres overlap at some step
+  kDoesNotHold,   ///< the object moves on in the hold
+  kNeverTouches,  ///< no finger ever touches the object
+  kNotConverged,  ///< contact forces were not found to the accuracy that a verdict needs
   kStepDependent,  ///< half the time step gives another verdict
 };
 const char* CertifyReasonText(CertifyReason reason);

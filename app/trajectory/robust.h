@@ -9,10 +9,10 @@ namespace pregrasp {
 
 /// The worlds in which a certified plan is simulated again, one change each.
 enum class RobustChange {
-  kLessFriction,  ///< between bodies, x 0.75
-  kMoreFriction,  ///< between bodies, x 1.25
-  kLighter,       ///< the object's mass and inertia, x 0.7
-  kHeavier,       ///< x 1.3
+  kLessFriction,   ///< between bodies, x 0.75
+  kMoreFriction,   ///< between bodies, x 1.25
+  kLighter,        ///< the object's mass and inertia, x 0.7
+  kHeavier,        ///< x 1.3
   kSpreadSupport,  ///< contacts resist turning like even pressure (StepConfig::spread_support)
 };
 inline constexpr int kNumRobustChanges = 5;

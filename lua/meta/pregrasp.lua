@@ -541,11 +541,11 @@ function Trajectory:grasps(options) end
 ---@field max_solves? integer moved sets of a sample that are put to inverse kinematics, 0 to 1000; 16
 ---@field patience? integer rounds after which refinement ends where none is feasible, 1 to 1000; 8
 ---@field max_probes? integer contact sets drawn where no sample holds: if none does, nothing is refined, 0 to 1e+06; 40000
----@field starts? integer restarts of inverse kinematics, 1 to 1000; 6
 ---@field search_sets? integer contact sets that the search draws after the samples, 0 to 1e+06; 20000
 ---@field search_solves? integer of those, put to inverse kinematics, 1 to 10000; 192
 ---@field search_found? integer grasps after which it ends, 1 to 1000; 8
----@field tip_tolerance? number a fingertip may miss its contact by this, 0.0001 to 0.01 m, within the rules at most 0.0005; 0.002
+---@field starts? integer restarts of inverse kinematics, 1 to 1000; 6
+---@field tip_tolerance? number a fingertip may miss its contact by this, 1e-04 to 0.01 m, within the rules at most 5e-04; 5e-04
 ---@field max_cone_deg? number between a distal axis and the inward normal, 1 to 180 deg, within the rules at most 60; 60
 ---@field contact_depth? number a contacting distal link may enter the object by this, 0 to 0.01 m, within the rules at most 0.001; 0.001
 
@@ -625,7 +625,7 @@ function Grasp:motion(options) end
 ---@field keyframe_starts? integer restarts of inverse kinematics at a keyframe, 1 to 1000; 25
 ---@field frame_starts? integer restarts of inverse kinematics in between, 1 to 1000; 4
 ---@field smoothing_sweeps? integer each frame drawn to the mean of its neighbours, 0 to 100; 6
----@field tip_tolerance? number a fingertip may miss its contact by this before a frame counts as loosened, 0.0001 to 0.01 m, within the rules at most 0.0005; 0.002
+---@field tip_tolerance? number a fingertip may miss its contact by this before a frame counts as loosened, 1e-04 to 0.01 m, within the rules at most 5e-04; 5e-04
 ---@field max_cone_deg? number between a distal axis and the inward normal, likewise, 1 to 180 deg, within the rules at most 60; 60
 ---@field contact_depth? number a contacting distal link may enter the object by this, likewise, 0 to 0.01 m, within the rules at most 0.001; 0.001
 

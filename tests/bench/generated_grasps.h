@@ -33,7 +33,7 @@ class GeneratedGrasps {
     const auto score = ScoreFunction::Load(weights / "score.safetensors");
     const auto generator = GraspGenerator::Load(weights / "generator.safetensors");
     const PointCloud cloud =
-        SamplePointCloud(scene.object().shape, kCloudPoints, Rng(seed, RngStream::kPointCloud));
+        SamplePointCloud(scene.object().shape, kCloudPoints, Rng(seed, RngStream::kObjectCloud));
     const std::vector<RigidTransform> X_WB = world_.StartPoses();
     const LearnedScorer scorer(score, scene, cloud, world_.environment(), pool_);
     const CloudStructure structure = generator.BuildStructure(cloud.P, X_WB[0].linear());
@@ -43,9 +43,9 @@ class GeneratedGrasps {
     for (const GraspContact& contact : pressing_) {
       fixed.fingers[static_cast<int>(contact.finger)] = {true, contact.p_OC, contact.nhat_O};
     }
-    const std::vector<Placement> conditions =
-        FindPlacements(BuildContactMesh(scene.object().shape, {}), world_.object(),
-                       *scorer.InContext(), fixed, kSamples, {}, Rng(seed, RngStream::kGrasp));
+    const std::vector<Placement> conditions = FindPlacements(
+        BuildContactMesh(scene.object().shape, {}), world_.object(), *scorer.InContext(), fixed,
+        kSamples, {}, Rng(seed, RngStream::kReleasePlacements));
     std::vector<GeneratedGrasp> grasps;
     for (int i = 0; i < kSamples && !conditions.empty(); ++i) {
       const Placement& condition = conditions[i % conditions.size()];
@@ -53,9 +53,9 @@ class GeneratedGrasps {
           generator
               .Sample(structure, encoded,
                       MakePlanningContacts(condition, &X_WB, world_.environment()), 1,
-                      Rng(seed, RngStream::kGrasp, 1, 2 * i))
+                      Rng(seed, RngStream::kGraspLatent, 1, i))
               .front();
-      grasps.push_back({points, Rng(seed, RngStream::kGrasp, 1, 2 * i + 1)});
+      grasps.push_back({points, Rng(seed, RngStream::kGraspCompletion, 1, i)});
     }
     return grasps;
   }

@@ -304,10 +304,10 @@ TEST_F(PlannerScriptTest, EachStepIsInTheRunDirectoryWithItsPicture) {
   std::vector<std::string> ids;
   const LoadedRun run = LoadRun(folder_.path() / "out/lesson");
   for (const StepFacts& step : run.steps) ids.push_back(step.id);
-  EXPECT_EQ(ids, (std::vector<std::string>{"scene.start", "graph.mesh", "graph.score",
-                                           "graph.prune.1", "graph.prune.2", "graph.prune.3",
-                                           "paths.rank.1", "path.1.mppi.1", "path.1.mppi.2",
-                                           "path.1.certify"}));
+  EXPECT_EQ(ids,
+            (std::vector<std::string>{"scene.start", "graph.mesh", "graph.score", "graph.prune.1",
+                                      "graph.prune.2", "graph.prune.3", "paths.rank.1",
+                                      "path.1.mppi.1", "path.1.mppi.2", "path.1.certify"}));
   EXPECT_FALSE(run.summary.status.has_value());  // no grasp was tried
   EXPECT_FALSE(VerifyManifest(folder_.path() / "out/lesson").has_value());
   EXPECT_EQ(run.manifest["configuration"]["mppi"]["samples"], 6);

@@ -114,7 +114,7 @@ void ExpectInsideTriangle(const std::array<Vector3, 3>& t, const Vector3& p) {
       const Vector3 side = n.cross(t[(i + k + 1) % 3] - a).normalized();
       if (side.dot(inward) < -0.7) beyond = std::min(beyond, side.dot(p - a) / -side.dot(inward));
     }
-    EXPECT_GE(distance, CalcEdgeInset(distance + beyond) - 2e-7);
+    EXPECT_GE(distance, CalcEdgeInset(distance + beyond) - 1e-6);
   }
 }
 

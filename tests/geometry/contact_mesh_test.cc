@@ -229,8 +229,8 @@ TEST(ContactMeshTest, TakesTheHullWhereHandlesNeedMoreTriangles) {
   EXPECT_EQ(CalcEulerNumber(mesh), 2);
 }
 
-TEST(ContactMeshTest, RefusesOddAndExtremeNumbers) {
-  for (const int triangles : {0, 10, 31, 202, -4}) {
+TEST(ContactMeshTest, RefusesOddAndSmallNumbers) {
+  for (const int triangles : {0, 10, 31, -4}) {
     EXPECT_THROW(Build(Sphere{0.1}, triangles), InternalError) << triangles;
   }
 }

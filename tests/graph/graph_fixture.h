@@ -59,11 +59,11 @@ class NoThumbScorer : public AnalyticScorer {
   }
 };
 
-/// All placements alike.
+/// All placements alike, tips that overlap among them.
 class ConstantScorer : public PlacementScorer {
  public:
   std::vector<double> Score(std::span<const Placement> placements) const override {
-    return std::vector<double>(placements.size(), 0.5);
+    return std::vector<double>(placements.size(), 0.0);
   }
   bool IsOccluded(Finger, const Placement::Contact&) const override { return false; }
 };
@@ -73,7 +73,6 @@ inline ContactGraph MakeScoredGraph(const PlacementScorer& context, const Placem
                                     double top_percent) {
   ContactGraphConfig config;
   config.top_percent = top_percent;
-  config.min_tip_distance = 0.0;
   ContactGraph graph(MakeBoxMesh(kBoxSize), config);
   graph.Score(SignedDistance(Box{kBoxSize}), context, free, 1);
   return graph;

@@ -128,8 +128,8 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
                     OnSide(Finger::kMiddle, -1, 0, -0.085)}),
             GraspStatus::kTipError);
   // Within reach as such, but below the table's top.
-  EXPECT_EQ(status({OnSide(Finger::kThumb, 1, 0, -0.099), OnSide(Finger::kIndex, -1, 0.012, -0.099),
-                    OnSide(Finger::kMiddle, -1, -0.012, -0.099)}),
+  EXPECT_EQ(status({OnSide(Finger::kThumb, 1, 0, -0.099), OnSide(Finger::kIndex, -1, 0.02, -0.099),
+                    OnSide(Finger::kMiddle, -1, -0.02, -0.099)}),
             GraspStatus::kCollision);
   EXPECT_NE(sentence.find("would overlap table by"), std::string::npos) << sentence;
 }
@@ -171,8 +171,8 @@ TEST(FeasibleGraspTest, AFailureSaysAsDataWhatStandsInTheWay) {
   }
 
   const GraspResult low =
-      test({OnSide(Finger::kThumb, 1, 0, -0.099), OnSide(Finger::kIndex, -1, 0.012, -0.099),
-            OnSide(Finger::kMiddle, -1, -0.012, -0.099)});
+      test({OnSide(Finger::kThumb, 1, 0, -0.099), OnSide(Finger::kIndex, -1, 0.02, -0.099),
+            OnSide(Finger::kMiddle, -1, -0.02, -0.099)});
   ASSERT_EQ(low.status, GraspStatus::kCollision);
   ASSERT_TRUE(low.fault.overlap.has_value());
   EXPECT_EQ(low.fault.overlap->other, "table");

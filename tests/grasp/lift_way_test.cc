@@ -16,8 +16,7 @@ std::vector<RigidTransform> PosesOf(const Scene& scene) {
 }
 
 LiftWay FindWay(const Scene& scene, int points = 512, const LiftWayConfig& config = {}) {
-  const PointCloud cloud =
-      SamplePointCloud(scene.object().shape, points, Rng(1, RngStream::kTest));
+  const PointCloud cloud = SamplePointCloud(scene.object().shape, points, Rng(1, RngStream::kTest));
   return FindLiftWay(PosesOf(scene), cloud, EnvironmentDistance(scene), Vector3::UnitZ(), config);
 }
 
@@ -64,8 +63,7 @@ TEST(LiftWayTest, GoesOnUntilTheObjectIsOutAndThenUp) {
   EXPECT_LT(out.x(), 0.18);
   EXPECT_EQ(way.rise_W, Vector3(0, 0, 0.02));
   // Nothing of it is then nearer than 5 mm to anything.
-  const PointCloud cloud =
-      SamplePointCloud(scene.object().shape, 512, Rng(2, RngStream::kTest));
+  const PointCloud cloud = SamplePointCloud(scene.object().shape, 512, Rng(2, RngStream::kTest));
   const EnvironmentDistance environment(scene);
   for (Eigen::Index i = 0; i < cloud.P.rows(); ++i) {
     const Vector3 p_W = scene.object().X_WB * Vector3(cloud.P.row(i)) + out + way.rise_W;

@@ -162,14 +162,13 @@ MotionlessEnd PressWithoutMoving(double overhang) {
   end.certificate = planner.Certify(mppi, state);
   end.release = planner.Release(graph, end.certificate);
   const GraspSet grasps = planner.CompleteGrasps(end.certificate, end.release, 1);
-  end.generated = static_cast<int>(grasps.grasps.size());
-  end.feasible = static_cast<int>(grasps.feasible.size());
+  end.generated = grasps.count(GraspSource::kGenerator);
+  end.feasible = grasps.count_feasible(GraspSource::kGenerator);
   GraspSearchConfig search;
   search.max_sets = 20000;
-  end.searched =
-      !SearchGrasps(planner.grasp_world(), search, {},
-                    planner.world().GetPoses(end.certificate.full.end), 1, job.pool())
-           .found.empty();
+  end.searched = !SearchGrasps(planner.grasp_world(), search, {},
+                               planner.world().GetPoses(end.certificate.full.end), 1, job.pool())
+                      .found.empty();
   return end;
 }
 

@@ -95,9 +95,11 @@ TEST(RunDirectoryTest, TheHeaderOfTheRolloutIsTheContracts) {
             "tool_p_WO_x,tool_p_WO_y,tool_p_WO_z,tool_q_WO_w,tool_q_WO_x,tool_q_WO_y,tool_q_WO_z,"
             "tool_w_WO_x,tool_w_WO_y,tool_w_WO_z,tool_v_WO_x,tool_v_WO_y,tool_v_WO_z,"
             "thumb_on,thumb_p_OC_x,thumb_p_OC_y,thumb_p_OC_z,"
+            "thumb_n_OC_x,thumb_n_OC_y,thumb_n_OC_z,"
             "thumb_target_W_x,thumb_target_W_y,thumb_target_W_z,"
             "thumb_f_W_x,thumb_f_W_y,thumb_f_W_z,"
             "index_on,index_p_OC_x,index_p_OC_y,index_p_OC_z,"
+            "index_n_OC_x,index_n_OC_y,index_n_OC_z,"
             "index_target_W_x,index_target_W_y,index_target_W_z,"
             "index_f_W_x,index_f_W_y,index_f_W_z\n");
 }
@@ -136,6 +138,7 @@ TEST(RunDirectoryTest, RowsOfTheRolloutReadBackToTheLastBit) {
       const FingertipState& finger = state.fingers[k];
       EXPECT_EQ(next(), finger.on ? 1.0 : 0.0);
       EXPECT_EQ(next3(), finger.p_OC);
+      EXPECT_EQ(next3(), finger.nhat_O);
       EXPECT_EQ(next3(), finger.p_WTarget);
       EXPECT_EQ(next3(), finger.f_W);
     }

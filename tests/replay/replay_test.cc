@@ -69,7 +69,7 @@ struct BarLift {
                      {{Finger::kThumb, Vector3(0, -y, 0.03), -Vector3::UnitY()},
                       {Finger::kIndex, Vector3(0.011, y, 0.03), Vector3::UnitY()},
                       {Finger::kMiddle, Vector3(-0.011, y, 0.03), Vector3::UnitY()}},
-                     grasp_world.StartPoses(), Rng(1, RngStream::kGrasp));
+                     grasp_world.StartPoses(), Rng(1, RngStream::kTest));
     PREGRASP_CHECK(grasp.feasible());
     lifted = scene;
     lifted.fingertips.grasp_stiffness = stiffness;
