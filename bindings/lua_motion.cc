@@ -224,7 +224,7 @@ MotionTask LuaMotion::GetTask() const {
   const auto number = static_cast<std::size_t>(grasp);
   return planner
       .MakeMotion(*state->certificate, state->grasps->grasps[number - 1].result,
-                  state->lifts.at(grasp)->way.direction_W, config.motion)
+                  *state->lifts.at(grasp), config.motion)
       .task();
 }
 

@@ -67,7 +67,7 @@ void Begin(Application& a) {
   const Planner planner = a.next.planner->WithConfig(a.next.config);
   const auto motion = std::make_shared<const HandMotion>(
       planner.MakeMotion(*a.next.certificate, a.next.grasps->grasps[number - 1].result,
-                         lift->second->way.direction_W, a.next.config.motion));
+                         *lift->second, a.next.config.motion));
   a.next.chosen_grasp = number;
   a.next.motion = motion;
   a.next.motion_state = std::make_shared<const MotionState>(motion->Start());

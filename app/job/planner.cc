@@ -247,16 +247,11 @@ std::vector<std::optional<LiftResult>> Planner::LiftGrasps(const Certificate& ce
 }
 
 HandMotion Planner::MakeMotion(const Certificate& certificate, const GraspResult& grasp,
-                               const Vector3& direction_W, const MotionConfig& config) const {
+                               const LiftResult& lift, const MotionConfig& config) const {
   PREGRASP_CHECK(grasp.kinematics.has_value());
-  MotionGrasp end;
-  for (const GraspContact& contact : grasp.contacts) {
-    end.contacts[static_cast<int>(contact.finger)] = {true, contact.p_OC, contact.nhat_O};
-  }
-  end.configuration = grasp.kinematics->ik.configuration();
   MotionTask task =
-      BuildMotionTask(*world_, certificate.trace, end, direction_W, config_.motion_timing);
-  return {grasp_world_->ik(), std::move(task), end.configuration, config, seed_};
+      BuildMotionTask(*world_, certificate.trace, {lift.trace, lift.lift_t}, config_.motion_timing);
+  return {grasp_world_->ik(), std::move(task), grasp.kinematics->ik.configuration(), config, seed_};
 }
 
 }  // namespace pregrasp

@@ -115,9 +115,9 @@ class Planner {
   std::vector<std::optional<LiftResult>> LiftGrasps(const Certificate& certificate,
                                                     const GraspSet& grasps) const;
 
-  /// @param direction_W  of the lift.
+  /// @param lift  the simulated lift of the grasp.
   HandMotion MakeMotion(const Certificate& certificate, const GraspResult& grasp,
-                        const Vector3& direction_W, const MotionConfig& config) const;
+                        const LiftResult& lift, const MotionConfig& config) const;
 
  private:
   std::vector<GeneratedGrasp> GenerateGrasps(const std::vector<RigidTransform>& X_WB,

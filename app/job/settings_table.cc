@@ -263,7 +263,7 @@ Settings LiftSettings() {
 
 Settings MotionSettings() {
   const char* clean = "a frame is clean within 0.0005 m, 60 deg and 0.001 m of overlap";
-  const char* whole = "the hand comes from 0.2 m off and lifts the object by 0.1 m";
+  const char* whole = "the hand comes from 0.2 m off";
   return {
       {"motion.order",
        kNoNumber,
@@ -282,13 +282,6 @@ Settings MotionSettings() {
        "in which the fingers close",
        FIELD(motion_timing.closing_seconds),
        {}},
-      {"motion.lift_seconds",
-       Real(0.0, 10.0, "s"),
-       "in which the hand rises",
-       FIELD(motion_timing.lift_seconds),
-       {}},
-      {"motion.lift_height", Real(0.0, 1.0, "m"), "by which the hand rises",
-       FIELD(motion_timing.lift_height), AtLeast(0.10, whole)},
       {"motion.approach_distance", Real(0.0, 1.0, "m"), "how far off the palm starts",
        FIELD(motion.approach_distance), AtLeast(0.20, whole)},
       {"motion.keyframe_starts",

@@ -11,7 +11,7 @@ namespace {
 
 std::array<Placement::Contact, kNumFingers> ContactsOf(const WorldState& state) {
   std::array<Placement::Contact, kNumFingers> contacts{};
-  for (int j = 0; j < kNumPlanningFingers; ++j) {
+  for (int j = 0; j < kNumFingers; ++j) {
     const FingertipState& tip = state.fingers[j];
     contacts[j] = {tip.on, tip.p_OC, tip.nhat_O};
   }
@@ -32,8 +32,16 @@ int FramesIn(double seconds, double fps) {
   return std::max(1, static_cast<int>(std::lround(seconds * fps)));
 }
 
-// Slow at both ends, so that the object starts and stops without a jerk.
-double Ease(double s) { return s * s * (3.0 - 2.0 * s); }
+// The row nearest to time t.
+const TraceRow& RowAt(const std::vector<TraceRow>& trace, double t) {
+  const auto later =
+      std::lower_bound(trace.begin(), trace.end(), t,
+                       [](const TraceRow& row, double seconds) { return row.state.t < seconds; });
+  if (later == trace.begin()) return trace.front();
+  if (later == trace.end()) return trace.back();
+  const auto earlier = later - 1;
+  return t - earlier->state.t < later->state.t - t ? *earlier : *later;
+}
 
 }  // namespace
 
@@ -52,11 +60,9 @@ const char* MotionPhaseName(MotionPhase phase) {
 }
 
 MotionTask BuildMotionTask(const World& world, const std::vector<TraceRow>& trace,
-                           const MotionGrasp& grasp, const Vector3& lift_W,
-                           const MotionTiming& timing) {
-  PREGRASP_CHECK(!trace.empty());
+                           const MotionLift& lift, const MotionTiming& timing) {
+  PREGRASP_CHECK(!trace.empty() && !lift.trace.empty());
   PREGRASP_CHECK(timing.fps > 0.0, timing.fps);
-  PREGRASP_CHECK(AreFinite(lift_W, timing.lift_height), timing.lift_height);
   MotionTask task;
   const auto add = [&](MotionPhase phase, const std::vector<RigidTransform>& X_WB,
                        const std::array<Placement::Contact, kNumFingers>& contacts) {
@@ -74,39 +80,39 @@ MotionTask BuildMotionTask(const World& world, const std::vector<TraceRow>& trac
     if (i == 0) mark_key();
   }
 
-  const double seconds = trace.back().state.t - trace.front().state.t;
+  const double begin = trace.front().state.t, seconds = trace.back().state.t - begin;
   const int count = FramesIn(seconds, timing.fps);
-  const double rows_per_frame = static_cast<double>(trace.size() - 1) / count;
   for (int i = 0; i <= count; ++i) {
-    const TraceRow& row = trace[static_cast<std::size_t>(std::lround(i * rows_per_frame))];
+    const TraceRow& row = RowAt(trace, begin + seconds * i / count);
     const auto contacts = ContactsOf(row.state);
     const bool changes = !SameFingers(contacts, task.frames.back().contacts);
     add(MotionPhase::kContact, world.GetPoses(row.state), contacts);
     if (i == 0 || i == count || changes) mark_key();
   }
 
-  const std::vector<RigidTransform> X_WB_end = task.frames.back().X_WB;
   const auto pressing = task.frames.back().contacts;
+  const auto grasp = ContactsOf(RowAt(lift.trace, lift.lift_t).state);
+  const double end = lift.trace.front().state.t, closing_seconds = lift.lift_t - end;
   const int closing = FramesIn(timing.closing_seconds, timing.fps);
   for (int i = 1; i <= closing; ++i) {
     // A pressing finger keeps its contact while the others close, if the grasp uses it there.
     std::array<Placement::Contact, kNumFingers> contacts{};
     for (int j = 0; j < kNumFingers; ++j) {
-      const bool stays = pressing[j].on && grasp.contacts[j].on &&
-                         (pressing[j].p_OC - grasp.contacts[j].p_OC).norm() < 1e-3;
-      if (stays) contacts[j] = grasp.contacts[j];
+      const bool stays =
+          pressing[j].on && grasp[j].on && (pressing[j].p_OC - grasp[j].p_OC).norm() < 1e-3;
+      if (stays) contacts[j] = grasp[j];
     }
-    add(MotionPhase::kClosing, X_WB_end, i == closing ? grasp.contacts : contacts);
+    const TraceRow& row = RowAt(lift.trace, end + closing_seconds * i / closing);
+    add(MotionPhase::kClosing, world.GetPoses(row.state), i == closing ? grasp : contacts);
     if (i == closing) mark_key();
   }
 
-  const int lift = FramesIn(timing.lift_seconds, timing.fps);
-  for (int i = 1; i <= lift; ++i) {
-    std::vector<RigidTransform> X_WB = X_WB_end;
-    const double height = timing.lift_height * Ease(static_cast<double>(i) / lift);
-    X_WB[0].translation() += height * lift_W;
-    add(MotionPhase::kLift, X_WB, grasp.contacts);
-    if (i == lift) mark_key();
+  const double lift_seconds = lift.trace.back().state.t - lift.lift_t;
+  const int lifting = FramesIn(lift_seconds, timing.fps);
+  for (int i = 1; i <= lifting; ++i) {
+    const TraceRow& row = RowAt(lift.trace, lift.lift_t + lift_seconds * i / lifting);
+    add(MotionPhase::kLift, world.GetPoses(row.state), ContactsOf(row.state));
+    if (i == lifting) mark_key();
   }
   for (const MotionFrameTask& frame : task.frames) {
     PREGRASP_CHECK(AreFinite(frame.t, frame.X_WB), frame.t);

@@ -25,27 +25,25 @@ struct MotionTask {
   std::vector<int> keyframes;  ///< ascending; the first and the last frame among them
 };
 
-/// The grasp that the animation ends in, the object at its final pose.
-struct MotionGrasp {
-  std::array<Placement::Contact, kNumFingers> contacts{};
-  HandConfiguration configuration;
+/// The simulated lift that the animation ends in.
+struct MotionLift {
+  const std::vector<TraceRow>& trace;  ///< every step, from the end of the certified trajectory on
+  double lift_t = 0.0;                 ///< when the fingers have closed and the lift begins [s]
 };
 
 struct MotionTiming {
   double fps = 30.0;
   double approach_seconds = 1.2;
   double closing_seconds = 1.0;
-  double lift_seconds = 1.2;
-  double lift_height = 0.10;  ///< [m]
 };
 
 /// Lays out the animation: approach to the first contact state with the object at rest, the
-/// certified trajectory at the speed of the physics, closing of the remaining fingers, lift along
-/// `lift_W` (unit). Keyframes are the ends of these phases and every frame at which a finger makes
-/// or breaks contact (paper, section "Hand motion synthesis").
+/// certified trajectory at the speed of the physics, closing of the remaining fingers while the
+/// bodies move as they do in the simulated lift until `lift.lift_t`, then the lift and its hold at
+/// the speed of the physics. Keyframes are the ends of these phases and every frame at which a
+/// finger makes or breaks contact (paper, section "Hand motion synthesis").
 MotionTask BuildMotionTask(const World& world, const std::vector<TraceRow>& trace,
-                           const MotionGrasp& grasp, const Vector3& lift_W,
-                           const MotionTiming& timing);
+                           const MotionLift& lift, const MotionTiming& timing);
 
 /// The inverse-kinematics problem of a frame, without warm start and reference.
 IkProblem MakeIkProblem(const MotionFrameTask& frame);

@@ -619,8 +619,6 @@ function Grasp:motion(options) end
 ---@field fps? number frames a second, 1 to 120 Hz, within the rules at least 30; 30
 ---@field approach_seconds? number from the start to the first contact, 0 to 10 s; 1.2
 ---@field closing_seconds? number in which the fingers close, 0 to 10 s; 1
----@field lift_seconds? number in which the hand rises, 0 to 10 s; 1.2
----@field lift_height? number by which the hand rises, 0 to 1 m, within the rules at least 0.1; 0.1
 ---@field approach_distance? number how far off the palm starts, 0 to 1 m, within the rules at least 0.2; 0.2
 ---@field keyframe_starts? integer restarts of inverse kinematics at a keyframe, 1 to 1000; 25
 ---@field frame_starts? integer restarts of inverse kinematics in between, 1 to 1000; 4

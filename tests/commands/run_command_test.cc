@@ -121,7 +121,7 @@ TEST_F(RunCommandTest, BadInputIsOneLineAndLeavesNothing) {
        "--set: certify.hold_seconds: expected a number from 0 to 30 s, got nan"},
       {Arguments({"--set", "certify.hold_seconds=-1"}), "--set: certify.hold_seconds: "},
       {Arguments({"--set", "lift.closing_seconds=1e300"}), "--set: lift.closing_seconds: "},
-      {Arguments({"--set", "motion.lift_height=nan"}), "--set: motion.lift_height: "},
+      {Arguments({"--set", "lift.height=nan"}), "--set: lift.height: "},
       {Arguments({"--set", "motion.fps=0"}), "--set: motion.fps: "},
       {Arguments({"--set", "mppi.progress=inf"}), "--set: mppi.progress: "},
       {Arguments({"--set", "grasps.samples=0"}),

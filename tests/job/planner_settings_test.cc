@@ -183,8 +183,7 @@ TEST(SettingRulesTest, TheDesignsLimitsOfSuccessAreTheBounds) {
                                                   {"lift.hold_seconds", 0.1},
                                                   {"motion.fps", 10},
                                                   {"motion.tip_tolerance", 2e-3},
-                                                  {"motion.approach_distance", 0.0},
-                                                  {"motion.lift_height", 0.0}};
+                                                  {"motion.approach_distance", 0.0}};
   for (const auto& [name, value] : loose) {
     PlannerConfig config;
     SetPlannerField(config, name, value);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/geometry/mass_properties.h"
 #include "app/hand/certificate.h"
 
@@ -29,6 +32,7 @@ class HandMotionTest : public ::testing::Test {
     solver_ = std::make_unique<IkSolver>(ShadowHand(), scene_);
     PushCarton();
     FindGrasp();
+    MakeLift();
   }
 
   void PushCarton() {
@@ -45,32 +49,54 @@ class HandMotionTest : public ::testing::Test {
 
   void FindGrasp() {
     const auto put = [&](Finger finger, double x, double y, double z) {
-      grasp_.contacts[static_cast<int>(finger)] = {true, Vector3(x, y * kSize.y() / 2, z),
-                                                   Vector3(0.0, y, 0.0)};
+      contacts_[static_cast<int>(finger)] = {true, Vector3(x, y * kSize.y() / 2, z),
+                                             Vector3(0.0, y, 0.0)};
     };
     put(Finger::kThumb, 0.0, -1.0, 0.03);
     put(Finger::kIndex, 0.011, 1.0, 0.03);
     put(Finger::kMiddle, -0.011, 1.0, 0.03);
     MotionFrameTask frame;
     frame.X_WB = world_->GetPoses(trace_.back().state);
-    frame.contacts = grasp_.contacts;
+    frame.contacts = contacts_;
     IkConfig config;
     config.max_starts = 100;
     const IkResult result = solver_->Solve(config, MakeIkProblem(frame), Rng(1, RngStream::kTest));
     ASSERT_TRUE(result.solved()) << IkStatusName(result.status);
-    grasp_.configuration = result.configuration();
+    grasp_ = result.configuration();
   }
 
   HandMotion Make(const MotionConfig& config) const {
-    return {*solver_, BuildMotionTask(*world_, trace_, grasp_, Vector3::UnitZ(), MotionTiming()),
-            grasp_.configuration, config, 1};
+    return {*solver_, BuildMotionTask(*world_, trace_, {lift_, lift_t_}, MotionTiming()), grasp_,
+            config, 1};
+  }
+
+  // Ten centimetres up in 1.2 s after 0.6 s at rest, turning a little, as no formula of ours would.
+  void MakeLift() {
+    WorldState state = trace_.back().state;
+    for (int f = 0; f < kNumFingers; ++f) {
+      state.fingers[f].on = contacts_[f].on;
+      state.fingers[f].p_OC = contacts_[f].p_OC;
+      state.fingers[f].nhat_O = contacts_[f].nhat_O;
+    }
+    const double dt = world_->config().dt;
+    lift_t_ = state.t + 0.6;
+    const Quaternion turn(Eigen::AngleAxisd(0.01 * dt, Vector3::UnitX()));
+    for (const double end = state.t + 1.8; state.t < end; state.t += dt) {
+      lift_.push_back({state, {}});
+      if (state.t < lift_t_) continue;
+      state.bodies[0].p_WB.z() += 0.1 / 1.2 * dt;
+      state.bodies[0].q_WB = turn * state.bodies[0].q_WB;
+    }
   }
 
   Scene scene_;
   std::unique_ptr<World> world_;
   std::unique_ptr<IkSolver> solver_;
   std::vector<TraceRow> trace_;
-  MotionGrasp grasp_;
+  std::vector<TraceRow> lift_;
+  double lift_t_ = 0.0;
+  std::array<Placement::Contact, kNumFingers> contacts_{};
+  HandConfiguration grasp_;
 };
 
 TEST_F(HandMotionTest, TheTaskKeepsTheTimesOfThePhysicsAndMarksEveryChangeOfContact) {
@@ -84,6 +110,23 @@ TEST_F(HandMotionTest, TheTaskKeepsTheTimesOfThePhysicsAndMarksEveryChangeOfCont
   EXPECT_EQ(contact_frames, 25);  // 0.8 s at 30 frames a second, both ends
   // Start, first contact, end of the push, closed, lifted.
   EXPECT_EQ(task.keyframes.size(), 5U);
+}
+
+TEST_F(HandMotionTest, TheLiftIsTheSimulatedOneAtTheSpeedOfThePhysics) {
+  const MotionTask task = BuildMotionTask(*world_, trace_, {lift_, lift_t_}, MotionTiming());
+  const int closed = task.keyframes[3], count = static_cast<int>(task.frames.size());
+  EXPECT_EQ(task.frames[closed].phase, MotionPhase::kClosing);
+  for (int i = closed; i < count; ++i) {
+    const double t = lift_t_ + task.frames[i].t - task.frames[closed].t;
+    const auto row =
+        std::min_element(lift_.begin(), lift_.end(), [t](const auto& a, const auto& b) {
+          return std::abs(a.state.t - t) < std::abs(b.state.t - t);
+        });
+    const RigidTransform X_WO = world_->GetPoses(row->state)[0];
+    // A frame may lie a step off: the lift's length is not a whole number of frames.
+    EXPECT_NEAR((task.frames[i].X_WB[0].translation() - X_WO.translation()).norm(), 0.0, 1e-3);
+  }
+  EXPECT_TRUE(task.frames.back().X_WB[0].isApprox(world_->GetPoses(lift_.back().state)[0], 0.0));
 }
 
 TEST_F(HandMotionTest, EveryFrameIsSolvedAndCertifiedByFcl) {
