@@ -125,7 +125,8 @@ class Runner {
       }
       return head + "not certified: " + reasons;
     }
-    if (!state->grasps) return head + "certified, but no fingertip can be anywhere on the object";
+    if (!state->grasps)
+      return head + "certified, but no place that was tried is free for a fingertip";
     if (end.progress.feasible == 0) {
       return head + "certified, but no grasp is feasible, most often because of " +
              CommonReason(*state);

@@ -19,12 +19,12 @@ std::string DescribeStart(const StartCertificate& certificate) {
   switch (certificate.verdict) {
     case StartVerdict::kCertified:
       return fmt::format(
-          "ungraspable at the start, certified: no forces at the {} surface points that a "
-          "fingertip can reach balance the weight at friction {:g}; {}",
+          "ungraspable at the start, certified for contacts on faces: no forces at the {} points "
+          "that a fingertip can reach balance the weight at friction {:g}{}",
           certificate.reachable_points, certificate.mu,
           std::isinf(certificate.mu_star)
-              ? "nor would they at any"
-              : fmt::format("that would take {:g}", certificate.mu_star));
+              ? ""
+              : fmt::format("; that would take {:g}", certificate.mu_star));
     case StartVerdict::kSearched:
       return fmt::format(
           "ungraspable at the start as far as a search can tell: 0 of {} contact sets are feasible "

@@ -52,7 +52,7 @@ std::string ExplainMotion(const std::string& name, const SimulationFacts& facts,
   }
   if (moved) {
     return fmt::format(
-        "The {} sticks to the {} and takes it along: that needs {:.2f} N of friction, and {:.2f} N "
+        "The {} sticks to the {}, which moves: that needs {:.2f} N of friction, and {:.2f} N "
         "are there.",
         finger, name, pushing->split.tangential, pushing->split.limit);
   }

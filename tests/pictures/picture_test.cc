@@ -264,7 +264,7 @@ TEST(ChooseViewDirectionTest, LooksWhereNothingIsInTheWay) {
 TEST_F(PictureMakerTest, TheWordsSayWhatDecidedTheMotion) {
   const auto lines = DescribeStep(job_.scene(), Pull(Press(0.11, 0.012), 0.03).facts, timeline_);
   EXPECT_EQ(lines[0], "The index's target moves by (30, 0, 0) mm in 0.75 s.");
-  EXPECT_EQ(lines[1].find("The index sticks to the ruler and takes it along: that needs 0."), 0U)
+  EXPECT_EQ(lines[1].find("The index sticks to the ruler, which moves: that needs 0."), 0U)
       << lines[1];
   EXPECT_EQ(lines[2].find("ruler moved\t2"), 0U) << lines[2];
   const Node& waited = timeline_.Do(timeline_.root(), Verb::kWait, {{"seconds", 0.1}});
