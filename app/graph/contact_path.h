@@ -46,7 +46,6 @@ class PathSearch {
   /// The next best path; false when there is none left.
   bool Next(ContactPath* path);
 
-  int num_found() const { return num_found_; }
   /// How many paths there are in all (as a double: it may be large).
   double num_paths() const;
 

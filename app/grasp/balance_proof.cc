@@ -125,8 +125,6 @@ double CalcProofSlack(std::span<const WrenchContact> contacts, double mu, const 
   return slack;
 }
 
-std::span<const double> FrictionLadder() { return kLadder; }
-
 double FindLeastFriction(std::span<const WrenchContact> contacts, const Vector3& gravity,
                          double torque_scale) {
   // A wider cone holds the narrower one, so all rungs above the first that can, can.

@@ -39,9 +39,6 @@ double CalcProofSlack(std::span<const WrenchContact> contacts, double mu, const 
 bool CanBalanceWeight(std::span<const WrenchContact> contacts, double mu, const Vector3& gravity,
                       double torque_scale, double total);
 
-/// Friction coefficients that FindLeastFriction tries, ascending.
-std::span<const double> FrictionLadder();
-
 /// The smallest coefficient of the ladder at which normal forces of 1000 times the weight can
 /// balance it: how far a proof is from failing. Infinity if they cannot at any.
 double FindLeastFriction(std::span<const WrenchContact> contacts, const Vector3& gravity,

@@ -127,10 +127,7 @@ std::optional<std::vector<GraspContact>> ContactSampler::Sample(
 
   std::vector<GraspContact> contacts = fixed;
   for (const Finger finger : fingers) {
-    const bool given = std::any_of(fixed.begin(), fixed.end(), [&](const GraspContact& contact) {
-      return contact.finger == finger;
-    });
-    if (given) continue;
+    if (FindContact(fixed, finger) != nullptr) continue;
     const std::optional<GraspContact> contact = DrawContact(finger, contacts, draw, rng);
     if (!contact) return std::nullopt;
     contacts.push_back(*contact);

@@ -88,10 +88,7 @@ Finger FindWorst(const std::array<double, kNumFingers>& values) {
 // The first finger that no grasp is without, of those that are not among the contacts.
 std::optional<Finger> FindMissing(const std::vector<GraspContact>& contacts) {
   for (const Finger finger : {Finger::kThumb, Finger::kIndex, Finger::kMiddle}) {
-    const bool placed =
-        std::any_of(contacts.begin(), contacts.end(),
-                    [&](const GraspContact& contact) { return contact.finger == finger; });
-    if (!placed) return finger;
+    if (FindContact(contacts, finger) == nullptr) return finger;
   }
   return std::nullopt;
 }
@@ -128,6 +125,8 @@ GraspFault FindFault(const GraspWorld& world, const GraspConfig& config,
 
 }  // namespace
 
+bool IsDroppable(Finger finger) { return finger == Finger::kRing || finger == Finger::kLittle; }
+
 std::vector<std::vector<Finger>> DroppableSets(bool may_drop) {
   if (!may_drop) return {{}};
   return {{}, {Finger::kLittle}, {Finger::kRing}, {Finger::kRing, Finger::kLittle}};
@@ -147,12 +146,9 @@ const char* GraspStatusName(GraspStatus status) {
   return kNames[static_cast<int>(status)];
 }
 
-bool GraspResult::uses(Finger finger) const {
-  return std::any_of(contacts.begin(), contacts.end(),
-                     [&](const GraspContact& contact) { return contact.finger == finger; });
-}
+bool GraspResult::uses(Finger finger) const { return FindContact(contacts, finger) != nullptr; }
 
-std::string Explain(const GraspResult& result, const GraspWorld& world) {
+std::string Explain(const GraspResult& result) {
   std::string fingers = JoinFingers(result.contacts);
   switch (result.status) {
     case GraspStatus::kFeasible:

@@ -75,7 +75,7 @@ struct GraspResult {
 
 /// One sentence for a person: which fingers, and what stands in the way. `world` is that of the
 /// test.
-std::string Explain(const GraspResult& result, const GraspWorld& world);
+std::string Explain(const GraspResult& result);
 
 /// How far contacts come, without the forces and reasons that only a report needs.
 struct GraspAttempt {
@@ -108,6 +108,8 @@ GraspResult TestContacts(const GraspWorld& world, const GraspConfig& config,
                          const std::vector<RigidTransform>& X_WB, Rng rng,
                          const HandConfiguration* warm_start = nullptr);
 
+/// Whether a grasp may be without the finger: ring and little.
+bool IsDroppable(Finger finger);
 /// What may be left out of a generated grasp, in the order in which that is tried: nothing, little,
 /// ring, both.
 std::vector<std::vector<Finger>> DroppableSets(bool may_drop);

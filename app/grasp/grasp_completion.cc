@@ -19,10 +19,8 @@ double LargestMove(const std::vector<GraspContact>& projected,
                    const std::vector<GraspContact>& contacts) {
   double largest = 0.0;
   for (const GraspContact& contact : contacts) {
-    for (const GraspContact& from : projected) {
-      if (from.finger != contact.finger) continue;
-      largest = std::max(largest, (contact.p_OC - from.p_OC).norm());
-    }
+    const GraspContact* from = FindContact(projected, contact.finger);
+    if (from != nullptr) largest = std::max(largest, (contact.p_OC - from->p_OC).norm());
   }
   return largest;
 }

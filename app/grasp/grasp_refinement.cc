@@ -13,8 +13,6 @@ constexpr int kDisturbances = 8;        // draws for a set that was not tried ye
 // A contact goes farther than its fingertip came, since the hand gives way only part of the way.
 constexpr double kOvershoot = 1.5;
 
-bool IsDroppable(Finger finger) { return finger == Finger::kRing || finger == Finger::kLittle; }
-
 // The finger that a link belongs to; none for the palm.
 std::optional<Finger> FindFinger(const HandModel& hand, int link) {
   for (int f = 0; f < kNumFingers; ++f) {
@@ -49,10 +47,7 @@ GraspRefinement::GraspRefinement(const ContactPlaces& places, const GraspConfig&
 void GraspRefinement::Start(const GraspAttempt& raw) {
   if (!raw.kinematics) return;
   for (std::size_t i = 0; i < choices_.size(); ++i) {
-    const bool used = std::any_of(
-        raw.contacts.begin(), raw.contacts.end(),
-        [&](const GraspContact& contact) { return contact.finger == choices_[i].finger; });
-    if (!used) choice_[i] = kLeftOut;
+    if (FindContact(raw.contacts, choices_[i].finger) == nullptr) choice_[i] = kLeftOut;
   }
   tried_.insert(choice_);
   last_ = raw.kinematics->ik;

@@ -20,6 +20,14 @@ struct GraspContact {
   Vector3 nhat_O = Vector3::UnitZ();
 };
 
+/// The finger's contact; null if it has none.
+inline const GraspContact* FindContact(const std::vector<GraspContact>& contacts, Finger finger) {
+  for (const GraspContact& contact : contacts) {
+    if (contact.finger == finger) return &contact;
+  }
+  return nullptr;
+}
+
 /// Where the fingertip sphere's centre is when it touches the contact.
 inline Vector3 TipCentre(const GraspContact& contact) {
   return FingertipCentre(contact.finger, contact.p_OC, contact.nhat_O);

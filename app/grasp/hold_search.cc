@@ -13,13 +13,6 @@ constexpr int kMaxCuts = 24;      // of one run
 constexpr int kMovesPerCut = 3;   // contacts moved for one missing wrench
 constexpr double kEnough = 0.02;  // of the cap on a force: how much of a wrench is enough
 
-bool IsFixed(const std::vector<GraspContact>& fixed, Finger finger) {
-  return std::any_of(fixed.begin(), fixed.end(),
-                     [&](const GraspContact& contact) { return contact.finger == finger; });
-}
-
-bool IsDroppable(Finger finger) { return finger == Finger::kRing || finger == Finger::kLittle; }
-
 }  // namespace
 
 std::vector<ContactChoices> FindChoices(const ContactPlaces& places,
@@ -29,7 +22,7 @@ std::vector<ContactChoices> FindChoices(const ContactPlaces& places,
   for (const GraspContact& contact : contacts) {
     ContactChoices choices{contact.finger, {contact}, {0.0}};
     std::vector<std::pair<double, int>> near;
-    if (!IsFixed(fixed, contact.finger)) {
+    if (FindContact(fixed, contact.finger) == nullptr) {
       for (const int place : places.FindWithin(contact.finger, contact.p_OC, reach)) {
         near.emplace_back((places.At(contact.finger, place).p_OC - contact.p_OC).norm(), place);
       }

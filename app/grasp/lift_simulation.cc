@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/core/check.h"
+#include "app/core/ease.h"
 #include "app/core/error.h"
 #include "app/core/text.h"
 #include "app/dynamics/tip_overlap.h"
@@ -19,9 +20,6 @@ constexpr double kUntouchedSeconds = 0.3;  // at the end
 constexpr double kPushSeconds = 0.3, kRestSeconds = 0.5;
 constexpr double kSameContact = 2e-3;  // a pressing finger that the grasp uses where it is [m]
 constexpr double kWorldRadius = 5.0;   // an object farther from its start than this has left [m]
-
-// Slow at both ends, so that the object starts and stops without a jerk.
-double Ease(double s) { return s * s * (3.0 - 2.0 * s); }
 
 bool Presses(const FingertipState& tip, const GraspContact& contact) {
   return tip.on && tip.touching && (tip.p_OC - contact.p_OC).norm() < kSameContact;

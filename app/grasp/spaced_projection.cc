@@ -126,10 +126,7 @@ std::vector<Tip> ProjectEach(const ContactPlaces& places, const GraspPoints& gen
   std::vector<Tip> tips;
   for (int f = 0; f < kNumFingers; ++f) {
     const Finger finger = static_cast<Finger>(f);
-    const auto given = std::find_if(fixed.begin(), fixed.end(), [&](const GraspContact& contact) {
-      return contact.finger == finger;
-    });
-    if (given != fixed.end()) {
+    if (const GraspContact* given = FindContact(fixed, finger)) {
       tips.push_back({*given, given->p_OC, given->p_OC, true});
       continue;
     }

@@ -22,7 +22,7 @@ GraspFacts MakeGraspFacts(const JobState& state, int entry) {
   facts.feasible = grasp.feasible();
   facts.status = GraspStatusName(result.status);
   facts.raw_status = GraspStatusName(grasp.raw.status);
-  facts.sentence = Explain(result, state.planner->grasp_world());
+  facts.sentence = Explain(result);
   facts.moved_mm = 1e3 * grasp.moved;
   facts.refinements = grasp.refinements;
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {

@@ -63,9 +63,9 @@ void PlannerConfig::Validate() const {
                      std::to_string(mppi.samples));
   }
   placements.Validate();
-  completion.grasp.Validate();
-  completion.probes.Validate();
+  completion.Validate();
   search.Validate();
+  lift.Validate();
   motion.ik.Validate();
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/core/check.h"
+#include "app/core/ease.h"
 #include "app/core/finite.h"
 
 namespace pregrasp {
@@ -27,8 +28,6 @@ IkConfig Loosen(IkConfig config, LooseningRung rung) {
 HandConfiguration Interpolate(const HandConfiguration& a, const HandConfiguration& b, double s) {
   return Advance(a, HandVector(s * CalcStep(a, b)));
 }
-
-double Ease(double s) { return s * s * (3.0 - 2.0 * s); }
 
 // The hand carried along rigidly with the object from one pose to another.
 HandConfiguration Carry(const HandConfiguration& hand, const RigidTransform& X_WO_from,

@@ -19,7 +19,6 @@ class ScoreFunction {
   static ScoreFunction FromTensors(const TensorFile& file);
 
   const SetEncoder& encoder() const { return encoder_; }
-  const ContactFeatureConfig& contact_config() const { return contacts_; }
 
   /// Once per object. @param R_WO0 its orientation at the start.
   CloudStructure BuildStructure(const MatrixX3& P_O, const Matrix3& R_WO0) const {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 
 #include "app/core/error.h"
 #include "app/core/json_reader.h"
@@ -20,6 +19,11 @@ Renderer& SharedRenderer() {
   return renderer;
 }
 
+// The overlays of a picture by their names in scripts, --overlay and pictures.jsonl.
+struct OverlayFlag {
+  const char* name;
+  bool PictureConfig::*flag;
+};
 constexpr std::array<OverlayFlag, 11> kOverlays{{{"forces", &PictureConfig::forces},
                                                  {"cones", &PictureConfig::cones},
                                                  {"contacts", &PictureConfig::contacts},
@@ -53,8 +57,6 @@ PictureMode ParsePictureMode(const std::string& text, const std::string& where,
   if (text == "all") return PictureMode::kAll;
   throw InputError(where, field, "\"none\", \"key\" or \"all\"", '"' + text + '"');
 }
-
-std::span<const OverlayFlag> OverlayFlags() { return kOverlays; }
 
 void SetOverlays(PictureConfig& config, const std::vector<std::string>& names) {
   for (const OverlayFlag& overlay : kOverlays) config.*overlay.flag = false;

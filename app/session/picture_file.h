@@ -29,12 +29,6 @@ struct Shot {
 nlohmann::ordered_json ShotToJson(const Shot& shot);
 Shot ShotFromJson(const nlohmann::json& value, const std::string& where);
 
-/// The overlays of a picture by their names in scripts, --overlay and pictures.jsonl.
-struct OverlayFlag {
-  const char* name;
-  bool PictureConfig::*flag;
-};
-std::span<const OverlayFlag> OverlayFlags();
 /// Shows these overlays and no others. @throws InputError naming "overlay".
 void SetOverlays(PictureConfig& config, const std::vector<std::string>& names);
 /// "draft", "normal" or "still". @throws InputError naming "quality".

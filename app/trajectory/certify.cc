@@ -12,11 +12,9 @@ namespace {
 // What stands in the way; each demand is written so that a NaN does not meet it.
 std::vector<CertifyReason> Judge(const PlanOutcome& outcome, const CertifyConfig& config) {
   if (outcome.diverged) return {CertifyReason::kDiverged};
-  double shift = 0.0, turn_deg = 0.0;
-  CalcShift(outcome.hold_start, outcome.end, &shift, &turn_deg);
   const bool touches = outcome.contact_seconds > 0.0;
   const bool clear = outcome.max_tip_overlap <= kTipOverlapAllowed;
-  const bool holds = shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg;
+  const bool holds = StaysInHold(outcome, config);
   const bool apart = outcome.min_tip_gap >= 0.0;
   const bool resolved = outcome.unresolved <= config.max_unresolved;
   std::vector<CertifyReason> reasons;
@@ -41,6 +39,12 @@ void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* 
   const RigidTransform X_a = a.bodies.front().X_WB(), X_b = b.bodies.front().X_WB();
   *shift = (X_b.translation() - X_a.translation()).norm();
   *turn_deg = RadToDeg(RotationAngle(X_a.linear(), X_b.linear()));
+}
+
+bool StaysInHold(const PlanOutcome& outcome, const CertifyConfig& config) {
+  double shift = 0.0, turn_deg = 0.0;
+  CalcShift(outcome.hold_start, outcome.end, &shift, &turn_deg);
+  return shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg;
 }
 
 const char* CertifyReasonText(CertifyReason reason) {

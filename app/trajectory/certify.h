@@ -44,6 +44,10 @@ struct Certificate {
 /// How far the object is in `b` from where it is in `a` [m], and how far turned [degrees].
 void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* turn_deg);
 
+/// Whether the object stays where it is while the last targets are kept, within the config's
+/// bounds.
+bool StaysInHold(const PlanOutcome& outcome, const CertifyConfig& config);
+
 /// Certifies the world plan `plan` (honesty rules 4 and 5).
 /// @param half_world  the same scene at half the step.
 Certificate CertifyPlan(const World& world, const World& half_world,

@@ -22,13 +22,6 @@ void ScaleMass(Scene& scene, double factor) {
   mass.I_BBcm *= factor;
 }
 
-bool Holds(const PlanOutcome& outcome, const CertifyConfig& config) {
-  if (outcome.diverged) return false;
-  double shift = 0.0, turn_deg = 0.0;
-  CalcShift(outcome.hold_start, outcome.end, &shift, &turn_deg);
-  return shift < config.max_hold_shift && turn_deg < config.max_hold_turn_deg;
-}
-
 }  // namespace
 
 const char* RobustChangeName(RobustChange change) {
@@ -79,8 +72,8 @@ RobustResult RobustWorlds::Test(const EnvironmentDistance& environment, const Wo
     outcome.change = static_cast<RobustChange>(i);
     CalcShift(nominal_end, run.end, &outcome.shift, &outcome.turn_deg);
     PREGRASP_CHECK(std::isfinite(outcome.shift) && std::isfinite(outcome.turn_deg));
-    outcome.held =
-        Holds(run, config) && outcome.shift <= kMaxShift && outcome.turn_deg <= kMaxTurnDeg;
+    outcome.held = !run.diverged && StaysInHold(run, config) && outcome.shift <= kMaxShift &&
+                   outcome.turn_deg <= kMaxTurnDeg;
     result.held += outcome.held;
     result.worst_shift = std::max(result.worst_shift, outcome.shift);
     result.worst_turn_deg = std::max(result.worst_turn_deg, outcome.turn_deg);

@@ -1,22 +1,20 @@
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <variant>
 
-#include "app/core/check.h"
 #include "tests/bench/dynamics_scenes.h"
+#include "tests/mjcf.h"
 
 namespace pregrasp {
 namespace {
 
-std::string Text(const Vector3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
-std::string Text(const Quaternion& q) {
-  return fmt::format("{} {} {} {}", q.w(), q.x(), q.y(), q.z());
-}
+using testing::FreeMujoco;
+using testing::LoadMjcf;
+using testing::MjcfShape;
+using testing::MjcfText;
 
 // One scene as an MJCF model: a free joint for what moves, a plane for the table.
 class ModelWriter {
@@ -26,7 +24,7 @@ class ModelWriter {
     for (const Body& body : scene.bodies) bodies += WriteBody(body);
     return fmt::format(
         "<mujoco><option gravity=\"{}\"/><asset>{}</asset><worldbody>{}</worldbody></mujoco>",
-        Text(scene.gravity), meshes_, bodies);
+        MjcfText(scene.gravity), meshes_, bodies);
   }
 
  private:
@@ -35,13 +33,14 @@ class ModelWriter {
       return fmt::format("<geom type=\"plane\" size=\"1 1 1\" friction=\"{} 0 0\"/>",
                          body.friction);
     }
-    std::string text =
-        fmt::format("<body name=\"{}\" pos=\"{}\" quat=\"{}\">", body.name,
-                    Text(Vector3(body.X_WB.translation())), Text(Quaternion(body.X_WB.linear())));
+    std::string text = fmt::format("<body name=\"{}\" pos=\"{}\" quat=\"{}\">", body.name,
+                                   MjcfText(Vector3(body.X_WB.translation())),
+                                   MjcfText(Quaternion(body.X_WB.linear())));
     if (body.movable()) {
       const MassProperties& mass = *body.mass_properties;
-      text += fmt::format("<freejoint/><inertial pos=\"{}\" mass=\"{}\" diaginertia=\"{}\"/>",
-                          Text(mass.p_BoBcm), mass.mass, Text(Vector3(mass.I_BBcm.diagonal())));
+      text +=
+          fmt::format("<freejoint/><inertial pos=\"{}\" mass=\"{}\" diaginertia=\"{}\"/>",
+                      MjcfText(mass.p_BoBcm), mass.mass, MjcfText(Vector3(mass.I_BBcm.diagonal())));
     }
     text += WriteGeoms(body.shape, RigidTransform::Identity(), body.friction);
     text += "</body>";
@@ -56,45 +55,21 @@ class ModelWriter {
       }
       return text;
     }
-    std::string kind;
-    if (const auto* box = std::get_if<Box>(&shape)) {
-      kind = fmt::format("type=\"box\" size=\"{}\"", Text(Vector3(0.5 * box->size)));
-    } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-      kind =
-          fmt::format("type=\"cylinder\" size=\"{} {}\"", cylinder->radius, 0.5 * cylinder->height);
-    } else {
-      const TriangleMesh& mesh = std::get<Mesh>(shape).mesh;
-      std::string vertices;
-      for (int i = 0; i < mesh.V.rows(); ++i) vertices += fmt::format(" {}", Text(mesh.V.row(i)));
-      meshes_ += fmt::format("<mesh name=\"hull\" vertex=\"{}\"/>", vertices);
-      kind = "type=\"mesh\" mesh=\"hull\"";
-    }
-    return fmt::format("<geom {} pos=\"{}\" quat=\"{}\" friction=\"{} 0 0\"/>", kind,
-                       Text(Vector3(X_BP.translation())), Text(Quaternion(X_BP.linear())),
-                       friction);
+    return fmt::format("<geom {} pos=\"{}\" quat=\"{}\" friction=\"{} 0 0\"/>",
+                       MjcfShape(shape, "hull", &meshes_), MjcfText(Vector3(X_BP.translation())),
+                       MjcfText(Quaternion(X_BP.linear())), friction);
   }
 
   std::string meshes_;
 };
 
-mjModel* LoadModel(const std::string& xml) {
-  auto vfs = std::make_unique<mjVFS>();
-  mj_defaultVFS(vfs.get());
-  mj_makeEmptyFileVFS(vfs.get(), "scene.xml", static_cast<int>(xml.size()));
-  const int file = mj_findFileVFS(vfs.get(), "scene.xml");
-  std::memcpy(vfs->filedata[file], xml.data(), xml.size());
-  char error[1000] = "";
-  mjModel* model = mj_loadXML("scene.xml", vfs.get(), error, sizeof(error));
-  mj_deleteVFS(vfs.get());
-  PREGRASP_CHECK(model != nullptr, error);
-  return model;
-}
-
 }  // namespace
 
 EngineRun RunMujoco(const DynamicsCase& c) {
-  mjModel* model = LoadModel(ModelWriter().Write(c.scene));
-  mjData* data = mj_makeData(model);
+  const std::unique_ptr<mjModel, FreeMujoco> owned_model = LoadMjcf(ModelWriter().Write(c.scene));
+  mjModel* const model = owned_model.get();
+  const std::unique_ptr<mjData, FreeMujoco> owned_data(mj_makeData(model));
+  mjData* const data = owned_data.get();
   const int object = mj_name2id(model, mjOBJ_BODY, c.scene.object().name.c_str());
   const Vector3 nhat_O = c.finger ? FingerNormal(c) : Vector3(Vector3::UnitZ());
   const Vector3 p_WC_start = c.scene.object().X_WB * c.p_OC;
@@ -126,8 +101,6 @@ EngineRun RunMujoco(const DynamicsCase& c) {
   }
   run.cpu_seconds = ThreadCpuSeconds() - start;
   run.X_WO = pose();
-  mj_deleteData(data);
-  mj_deleteModel(model);
   return run;
 }
 

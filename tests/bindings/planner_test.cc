@@ -32,8 +32,7 @@ class PlannerScriptTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     weights_ = std::make_unique<TestFolder>();
-    WriteTensors(weights_->path() / "score.safetensors", MakeRandomScore(3));
-    WriteTensors(weights_->path() / "generator.safetensors", MakeRandomGenerator(4));
+    WriteRandomWeights(weights_->path());
   }
   static void TearDownTestSuite() { weights_.reset(); }
 

@@ -98,7 +98,7 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
     const GraspResult result =
         TestContacts(world, config, contacts, start, Rng(1, RngStream::kTest));
     EXPECT_EQ(result.feasible(), result.status == GraspStatus::kFeasible);
-    sentence = Explain(result, world);
+    sentence = Explain(result);
     return result.status;
   };
   EXPECT_EQ(status({OnSide(Finger::kThumb, 1, 0, 0), OnSide(Finger::kIndex, -1, 0, 0),

@@ -180,7 +180,6 @@ TEST(SettingRulesTest, TheDesignsLimitsOfSuccessAreTheBounds) {
                                                   {"grasps.tip_tolerance", 1e-3},
                                                   {"grasps.max_cone_deg", 70},
                                                   {"lift.height", 0.05},
-                                                  {"lift.hold_seconds", 0.1},
                                                   {"motion.fps", 10},
                                                   {"motion.tip_tolerance", 2e-3},
                                                   {"motion.approach_distance", 0.0}};

@@ -19,8 +19,7 @@ namespace {
 class RunPolicyTest : public testing::Test {
  protected:
   RunPolicyTest() {
-    WriteTensors(folder_.path() / "score.safetensors", MakeRandomScore(3));
-    WriteTensors(folder_.path() / "generator.safetensors", MakeRandomGenerator(4));
+    WriteRandomWeights(folder_.path());
     setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);  // for verdicts
     setup_.scene = MakeRulerScene();
     setup_.weights = folder_.path();

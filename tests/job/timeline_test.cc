@@ -20,10 +20,7 @@ using Json = nlohmann::json;
 // Short plans with networks whose weights are random.
 class TimelineTest : public testing::Test {
  protected:
-  TimelineTest() {
-    WriteTensors(folder_.path() / "score.safetensors", MakeRandomScore(3));
-    WriteTensors(folder_.path() / "generator.safetensors", MakeRandomGenerator(4));
-  }
+  TimelineTest() { WriteRandomWeights(folder_.path()); }
   ~TimelineTest() override { ClearInterrupt(); }
 
   std::unique_ptr<Job> MakeJob(int threads = 1) const {

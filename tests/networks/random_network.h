@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -115,6 +116,12 @@ inline PlanningContacts MakeRandomContacts(Rng& rng, const MatrixX3& P) {
   if (which & 1) contacts[0] = MakeRandomContact(rng, P);
   if (which & 2) contacts[1] = MakeRandomContact(rng, P);
   return contacts;
+}
+
+/// Both networks' files, as a planner loads them from a folder.
+inline void WriteRandomWeights(const std::filesystem::path& folder) {
+  WriteTensors(folder / "score.safetensors", MakeRandomScore(3));
+  WriteTensors(folder / "generator.safetensors", MakeRandomGenerator(4));
 }
 
 }  // namespace pregrasp

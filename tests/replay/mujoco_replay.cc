@@ -1,35 +1,33 @@
 #include "tests/replay/mujoco_replay.h"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <sstream>
 #include <string>
-#include <variant>
 
 #include "app/core/check.h"
 #include "app/core/error.h"
 #include "app/geometry/hull.h"
+#include "tests/mjcf.h"
 
 namespace pregrasp {
 namespace {
+
+using testing::FreeMujoco;
+using testing::LoadMjcf;
+using testing::MjcfShape;
+using testing::MjcfText;
 
 constexpr double kUntouchedSeconds = 0.3;
 constexpr double kJump = 3e-3;  // a contact that moves so far in a row was put anew [m]
 
 bool IsPutAnew(const ReplayRow::FingerColumns& from, const ReplayRow::FingerColumns& to) {
   return !to.on || !from.on || (to.p_OC - from.p_OC).norm() > kJump;
-}
-
-std::string Text(const Vector3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
-std::string Text(const Quaternion& q) {
-  return fmt::format("{} {} {} {}", q.w(), q.x(), q.y(), q.z());
 }
 
 // A scene as an MJCF model: bodies of convex pieces, every pair of bodies of which one moves with
@@ -46,20 +44,20 @@ class SceneModel {
         "<mujoco><option gravity=\"{}\" timestep=\"{}\" cone=\"elliptic\" impratio=\"10\" "
         "iterations=\"200\" noslip_iterations=\"10\"/><size njmax=\"4000\" nconmax=\"1000\"/>"
         "<asset>{}</asset><worldbody>{}</worldbody><contact>{}</contact></mujoco>",
-        Text(scene.gravity), dt, meshes_, bodies, WritePairs(scene, dt));
+        MjcfText(scene.gravity), dt, meshes_, bodies, WritePairs(scene, dt));
   }
 
  private:
   std::string WriteBody(const Body& body, const RigidTransform& X_WB) {
     std::string text =
         fmt::format("<body name=\"{}\" pos=\"{}\" quat=\"{}\">", body.name,
-                    Text(Vector3(X_WB.translation())), Text(Quaternion(X_WB.linear())));
+                    MjcfText(Vector3(X_WB.translation())), MjcfText(Quaternion(X_WB.linear())));
     if (body.movable()) {
       const MassProperties& mass = *body.mass_properties;
       const Matrix3& I = mass.I_BBcm;
       text += fmt::format(
           "<freejoint/><inertial pos=\"{}\" mass=\"{}\" fullinertia=\"{} {} {} {} {} {}\"/>",
-          Text(mass.p_BoBcm), mass.mass, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2));
+          MjcfText(mass.p_BoBcm), mass.mass, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2));
     }
     counts_.push_back(0);
     for (const ConvexPiece& piece : DecomposeConvex(body.shape)) text += WriteGeom(piece);
@@ -70,30 +68,8 @@ class SceneModel {
     const std::string name = fmt::format("g{}.{}", counts_.size() - 1, counts_.back()++);
     return fmt::format(
         "<geom name=\"{}\" {} pos=\"{}\" quat=\"{}\" contype=\"0\" conaffinity=\"0\"/>", name,
-        WriteShape(piece.shape, name), Text(Vector3(piece.X_BP.translation())),
-        Text(Quaternion(piece.X_BP.linear())));
-  }
-
-  std::string WriteShape(const Shape& shape, const std::string& name) {
-    if (const auto* box = std::get_if<Box>(&shape)) {
-      return fmt::format("type=\"box\" size=\"{}\"", Text(Vector3(0.5 * box->size)));
-    }
-    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-      return fmt::format("type=\"cylinder\" size=\"{} {}\"", cylinder->radius,
-                         0.5 * cylinder->height);
-    }
-    if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-      return fmt::format("type=\"capsule\" size=\"{} {}\"", capsule->radius, 0.5 * capsule->height);
-    }
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-      return fmt::format("type=\"sphere\" size=\"{}\"", sphere->radius);
-    }
-    // MuJoCo moves a mesh to its centre of mass and turns it, and its geoms back.
-    const TriangleMesh& mesh = std::get<Mesh>(shape).mesh;
-    std::string vertices;
-    for (int i = 0; i < mesh.V.rows(); ++i) vertices += fmt::format(" {}", Text(mesh.V.row(i)));
-    meshes_ += fmt::format("<mesh name=\"{}\" vertex=\"{}\"/>", name, vertices);
-    return fmt::format("type=\"mesh\" mesh=\"{}\"", name);
+        MjcfShape(piece.shape, name, &meshes_), MjcfText(Vector3(piece.X_BP.translation())),
+        MjcfText(Quaternion(piece.X_BP.linear())));
   }
 
   std::string WritePairs(const Scene& scene, double dt) const {
@@ -118,25 +94,6 @@ class SceneModel {
   std::string meshes_;
   std::vector<int> counts_;  // pieces by body
 };
-
-struct FreeModel {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-std::unique_ptr<mjModel, FreeModel> LoadXml(const std::string& xml) {
-  auto vfs = std::make_unique<mjVFS>();
-  mj_defaultVFS(vfs.get());
-  mj_makeEmptyFileVFS(vfs.get(), "scene.xml", static_cast<int>(xml.size()));
-  const int file = mj_findFileVFS(vfs.get(), "scene.xml");
-  std::memcpy(vfs->filedata[file], xml.data(), xml.size());
-  char error[1000] = "";
-  std::unique_ptr<mjModel, FreeModel> model(
-      mj_loadXML("scene.xml", vfs.get(), error, sizeof(error)));
-  mj_deleteVFS(vfs.get());
-  PREGRASP_CHECK(model != nullptr, error);
-  return model;
-}
 
 // One finger: a massless point on a spring, on the object's surface, sliding where the cone says.
 class SpringFinger {
@@ -177,7 +134,7 @@ class Replay {
  public:
   Replay(const Scene& scene, const std::vector<ReplayRow>& rows, double dt)
       : scene_(scene), rows_(rows), dt_(dt) {
-    model_ = LoadXml(SceneModel().Write(scene, rows.front().X_WB, dt));
+    model_ = LoadMjcf(SceneModel().Write(scene, rows.front().X_WB, dt));
     data_.reset(mj_makeData(model_.get()));
     object_ = mj_name2id(model_.get(), mjOBJ_BODY, scene.object().name.c_str());
   }
@@ -253,8 +210,8 @@ class Replay {
   const Scene& scene_;
   const std::vector<ReplayRow>& rows_;
   double dt_;
-  std::unique_ptr<mjModel, FreeModel> model_;
-  std::unique_ptr<mjData, FreeModel> data_;
+  std::unique_ptr<mjModel, FreeMujoco> model_;
+  std::unique_ptr<mjData, FreeMujoco> data_;
   int object_ = 0;
   std::array<SpringFinger, kNumFingers> fingers_;
 };

@@ -49,7 +49,7 @@ TEST_F(GraspGrowthTest, EveryGraspPassesTheTestAgain) {
     const GraspResult test =
         TestContacts(*world, config.search.grasp, grasp.contacts, world->StartPoses(),
                      Rng(1, RngStream::kTest), &grasp.hand);
-    EXPECT_TRUE(test.feasible()) << Explain(test, *world);
+    EXPECT_TRUE(test.feasible()) << Explain(test);
     for (const GraspContact& contact : grasp.contacts) {
       EXPECT_NEAR(world->object().Calc(contact.p_OC), 0.0, 1e-6);
     }
@@ -83,7 +83,7 @@ TEST_F(GraspGrowthTest, AGraspSurvivesRelief) {
     for (const GrownGrasp& grasp : grown.grasps) {
       const GraspResult test = TestContacts(*world, config.search.grasp, grasp.contacts, X_WB,
                                             Rng(1, RngStream::kTest), &grasp.hand);
-      EXPECT_TRUE(test.feasible()) << relief << ": " << Explain(test, *world);
+      EXPECT_TRUE(test.feasible()) << relief << ": " << Explain(test);
     }
   }
 }
