@@ -20,6 +20,7 @@
 #include "app/geometry/signed_distance.h"
 #include "app/geometry/tessellate.h"
 #include "app/geometry/triangle_samples.h"
+#include "app/scene/shape_visit.h"
 
 namespace pregrasp {
 namespace {
@@ -196,30 +197,27 @@ std::vector<TriangleMesh> DecomposeOnce(const TriangleMesh& mesh, const Decompos
   return hulls;
 }
 
-void Decompose(const Shape& shape, const RigidTransform& X_BP, const DecomposeConfig& config,
-               std::vector<ConvexPiece>& pieces) {
-  if (const auto* whole = std::get_if<Union>(&shape)) {
-    for (const PlacedShape& part : whole->parts) {
-      Decompose(part.shape, X_BP * part.X_BP, config, pieces);
+// A leaf's convex pieces: itself, or the hulls that a mesh falls into, which keep its file's name.
+struct LeafPieces {
+  const RigidTransform& X_BP;
+  const DecomposeConfig& config;
+  std::vector<ConvexPiece>& pieces;
+
+  void operator()(const Mesh& mesh) const { Add(mesh.mesh, mesh.file); }
+  void operator()(const Cloud& cloud) const { Add(cloud.mesh, cloud.file); }
+  void operator()(const Union& /*flattened*/) const {}
+  template <typename Primitive>
+  void operator()(const Primitive& primitive) const {
+    pieces.push_back({primitive, X_BP});
+  }
+
+ private:
+  void Add(const TriangleMesh& mesh, const std::string& file) const {
+    for (TriangleMesh& hull : DecomposeOnce(mesh, config)) {
+      pieces.push_back({Mesh{file, 1.0, std::move(hull)}, X_BP});
     }
-    return;
   }
-  const TriangleMesh* mesh = nullptr;
-  std::string file;
-  if (const auto* read = std::get_if<Mesh>(&shape)) {
-    mesh = &read->mesh;
-    file = read->file;
-  } else if (const auto* cloud = std::get_if<Cloud>(&shape)) {
-    mesh = &cloud->mesh;
-    file = cloud->file;
-  } else {
-    pieces.push_back({shape, X_BP});
-    return;
-  }
-  for (TriangleMesh& hull : DecomposeOnce(*mesh, config)) {
-    pieces.push_back({Mesh{file, 1.0, std::move(hull)}, X_BP});
-  }
-}
+};
 
 }  // namespace
 
@@ -237,7 +235,9 @@ void DecomposeConfig::Validate() const {
 std::vector<ConvexPiece> DecomposeConvex(const Shape& shape, const DecomposeConfig& config) {
   config.Validate();
   std::vector<ConvexPiece> pieces;
-  Decompose(shape, RigidTransform::Identity(), config, pieces);
+  ForEachLeaf(shape, RigidTransform::Identity(), [&](const Shape& leaf, const RigidTransform& X) {
+    std::visit(LeafPieces{X, config, pieces}, leaf);
+  });
   return pieces;
 }
 

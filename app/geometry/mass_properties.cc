@@ -9,6 +9,7 @@
 #include "app/geometry/bounds.h"
 #include "app/geometry/mesh_topology.h"
 #include "app/geometry/signed_distance.h"
+#include "app/scene/shape_visit.h"
 
 namespace pregrasp {
 namespace {
@@ -160,21 +161,15 @@ class OverlapIntegral {
   Moments moments_;
 };
 
-void FlattenParts(const Union& whole, const RigidTransform& X_BU, std::vector<PlacedPart>& parts,
-                  Moments& sum) {
-  for (const PlacedShape& part : whole.parts) {
-    const RigidTransform X_BP = X_BU * part.X_BP;
-    if (const auto* nested = std::get_if<Union>(&part.shape)) {
-      FlattenParts(*nested, X_BP, parts, sum);
-      continue;
-    }
-    sum.Add(Moved(CalcMoments(part.shape), X_BP));
-    const AlignedBox bounds = CalcBounds(part.shape, X_BP);
+void FlattenParts(const Union& whole, std::vector<PlacedPart>& parts, Moments& sum) {
+  const auto add = [&](const Shape& leaf, const RigidTransform& X_BP) {
+    sum.Add(Moved(CalcMoments(leaf), X_BP));
+    const Matrix3 turn = X_BP.linear().cwiseAbs();
     const bool fills_bounds =
-        std::holds_alternative<Box>(part.shape) &&
-        X_BP.linear().cwiseAbs().isApprox(X_BP.linear().cwiseAbs().array().round().matrix(), 1e-15);
-    parts.push_back({SignedDistance(part.shape), X_BP.inverse(), bounds, fills_bounds});
-  }
+        std::holds_alternative<Box>(leaf) && turn.isApprox(turn.array().round().matrix(), 1e-15);
+    parts.push_back({SignedDistance(leaf), X_BP.inverse(), CalcBounds(leaf, X_BP), fills_bounds});
+  };
+  for (const PlacedShape& part : whole.parts) ForEachLeaf(part.shape, part.X_BP, add);
 }
 
 // The coordinates along `axis` at which the parts' bounds begin and end within `whole`, with its
@@ -225,24 +220,22 @@ Moments OfOverlaps(const std::vector<PlacedPart>& parts) {
 Moments OfUnion(const Union& whole) {
   std::vector<PlacedPart> parts;
   Moments moments;
-  FlattenParts(whole, RigidTransform::Identity(), parts, moments);
+  FlattenParts(whole, parts, moments);
   moments.Add(OfOverlaps(parts), -1.0);
   return moments;
 }
 
-Moments CalcMoments(const Shape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) return OfBox(box->size);
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    return OfCylinder(cylinder->radius, cylinder->height);
-  }
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    return OfCapsule(capsule->radius, capsule->height);
-  }
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return OfSphere(sphere->radius);
-  if (const auto* mesh = std::get_if<Mesh>(&shape)) return OfMesh(mesh->mesh);
-  if (const auto* cloud = std::get_if<Cloud>(&shape)) return OfMesh(cloud->mesh);
-  return OfUnion(*std::get_if<Union>(&shape));
-}
+struct MomentsOf {
+  Moments operator()(const Box& box) const { return OfBox(box.size); }
+  Moments operator()(const Cylinder& c) const { return OfCylinder(c.radius, c.height); }
+  Moments operator()(const Capsule& c) const { return OfCapsule(c.radius, c.height); }
+  Moments operator()(const Sphere& sphere) const { return OfSphere(sphere.radius); }
+  Moments operator()(const Mesh& mesh) const { return OfMesh(mesh.mesh); }
+  Moments operator()(const Cloud& cloud) const { return OfMesh(cloud.mesh); }
+  Moments operator()(const Union& whole) const { return OfUnion(whole); }
+};
+
+Moments CalcMoments(const Shape& shape) { return std::visit(MomentsOf{}, shape); }
 
 }  // namespace
 

@@ -1,6 +1,5 @@
 #include "app/geometry/overlap.h"
 
-#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 
 #include <algorithm>
@@ -10,9 +9,11 @@
 
 #include "app/core/check.h"
 #include "app/geometry/bounds.h"
+#include "app/geometry/fcl_shape.h"
 #include "app/geometry/signed_distance.h"
 #include "app/geometry/simplify.h"
 #include "app/geometry/tessellate.h"
+#include "app/scene/shape_visit.h"
 
 namespace pregrasp {
 namespace {
@@ -27,50 +28,16 @@ struct Leaf {
   MatrixX3 samples;     // on its surface, in P
 };
 
-std::shared_ptr<fcl::CollisionGeometryd> MakeSurface(const TriangleMesh& mesh) {
-  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  std::vector<fcl::Vector3d> points(mesh.V.rows());
-  for (int v = 0; v < mesh.V.rows(); ++v) points[v] = mesh.V.row(v);
-  std::vector<fcl::Triangle> triangles(mesh.F.rows());
-  for (int f = 0; f < mesh.F.rows(); ++f) {
-    triangles[f].set(mesh.F(f, 0), mesh.F(f, 1), mesh.F(f, 2));
-  }
-  model->beginModel();
-  model->addSubModel(points, triangles);
-  model->endModel();
-  return model;
-}
-
-std::shared_ptr<fcl::CollisionGeometryd> MakeGeometry(const Shape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) return std::make_shared<fcl::Boxd>(box->size);
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    return std::make_shared<fcl::Cylinderd>(cylinder->radius, cylinder->height);
-  }
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    return std::make_shared<fcl::Capsuled>(capsule->radius, capsule->height);
-  }
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    return std::make_shared<fcl::Sphered>(sphere->radius);
-  }
-  return MakeSurface(Tessellate(shape));
-}
-
-void CollectLeaves(const Shape& shape, const RigidTransform& X_WP, std::vector<Leaf>& leaves) {
-  if (const auto* whole = std::get_if<Union>(&shape)) {
-    for (const PlacedShape& part : whole->parts) {
-      CollectLeaves(part.shape, X_WP * part.X_BP, leaves);
-    }
-    return;
-  }
+std::vector<Leaf> CollectLeaves(const Shape& shape, const RigidTransform& X_WB) {
   constexpr int kAcross = 10;
-  const double spacing = CalcBounds(shape).sizes().maxCoeff() / kAcross;
-  Leaf leaf{X_WP,
-            CalcBounds(shape, X_WP),
-            SignedDistance(shape),
-            MakeGeometry(shape),
-            std::holds_alternative<Mesh>(shape) || std::holds_alternative<Cloud>(shape),
-            SplitLongEdges(Tessellate(shape, 32), spacing).V};
-  leaves.push_back(std::move(leaf));
+  std::vector<Leaf> leaves;
+  ForEachLeaf(shape, X_WB, [&](const Shape& part, const RigidTransform& X_WP) {
+    const double spacing = CalcBounds(part).sizes().maxCoeff() / kAcross;
+    leaves.push_back({X_WP, CalcBounds(part, X_WP), SignedDistance(part), MakeFclShape(part),
+                      std::holds_alternative<Mesh>(part) || std::holds_alternative<Cloud>(part),
+                      SplitLongEdges(Tessellate(part, 32), spacing).V});
+  });
+  return leaves;
 }
 
 // Whether FCL finds that the two meet. Only the question with a yes or no is asked: in Debian's
@@ -140,7 +107,7 @@ std::vector<Overlap> FindOverlaps(const Scene& scene, double tolerance) {
   const auto count = static_cast<int>(scene.bodies.size());
   std::vector<std::vector<Leaf>> leaves(count);
   for (int i = 0; i < count; ++i) {
-    CollectLeaves(scene.bodies[i].shape, scene.bodies[i].X_WB, leaves[i]);
+    leaves[i] = CollectLeaves(scene.bodies[i].shape, scene.bodies[i].X_WB);
   }
   std::vector<Overlap> overlaps;
   for (int a = 0; a < count; ++a) {

@@ -8,6 +8,7 @@
 #include "app/core/check.h"
 #include "app/geometry/signed_distance.h"
 #include "app/geometry/tessellate.h"
+#include "app/scene/shape_visit.h"
 
 namespace pregrasp {
 namespace {
@@ -24,21 +25,14 @@ struct Leaf {
   RigidTransform X_BP;
 };
 
-void CollectLeaves(const Shape& shape, const RigidTransform& X_BP, std::vector<Leaf>& leaves) {
-  if (const auto* whole = std::get_if<Union>(&shape)) {
-    for (const PlacedShape& part : whole->parts)
-      CollectLeaves(part.shape, X_BP * part.X_BP, leaves);
-    return;
-  }
-  leaves.push_back({SignedDistance(shape), Tessellate(shape, kSegments), X_BP});
-}
-
 // Draws points on all leaves by area, puts them on the true surfaces, and leaves out those that
 // another part covers.
 class Candidates {
  public:
   explicit Candidates(const Shape& shape) : distance_(shape) {
-    CollectLeaves(shape, RigidTransform::Identity(), leaves_);
+    ForEachLeaf(shape, RigidTransform::Identity(), [&](const Shape& leaf, const RigidTransform& X) {
+      leaves_.push_back({SignedDistance(leaf), Tessellate(leaf, kSegments), X});
+    });
     double sum = 0.0;
     for (std::size_t l = 0; l < leaves_.size(); ++l) {
       const TriangleMesh& mesh = leaves_[l].mesh;

@@ -8,6 +8,7 @@
 
 #include "app/core/check.h"
 #include "app/geometry/mesh_distance.h"
+#include "app/scene/shape_visit.h"
 
 namespace pregrasp {
 namespace {
@@ -44,70 +45,62 @@ class PartsDistance {
   std::vector<Part> parts_;
 };
 
-double CalcLeaf(const Leaf& leaf, const Vector3& p) {
-  switch (leaf.index()) {
-    case 0:
-      return CalcDistance(*std::get_if<Box>(&leaf), p);
-    case 1:
-      return CalcDistance(*std::get_if<Cylinder>(&leaf), p);
-    case 2:
-      return CalcDistance(*std::get_if<Capsule>(&leaf), p);
-    case 3:
-      return CalcDistance(*std::get_if<Sphere>(&leaf), p);
-    default:
-      return (*std::get_if<4>(&leaf))->distance.Calc(p);
+// What is asked of a leaf, one way for each kind.
+struct Distance {
+  const Vector3& p;
+  double operator()(const std::unique_ptr<const MeshLeaf>& mesh) const {
+    return mesh->distance.Calc(p);
   }
-}
+  template <typename Primitive>
+  double operator()(const Primitive& primitive) const {
+    return CalcDistance(primitive, p);
+  }
+};
+struct Gradient {
+  const Vector3& p;
+  DistanceSample operator()(const std::unique_ptr<const MeshLeaf>& mesh) const {
+    return mesh->distance.CalcWithGradient(p);
+  }
+  template <typename Primitive>
+  DistanceSample operator()(const Primitive& primitive) const {
+    return CalcDistanceWithGradient(primitive, p);
+  }
+};
+struct FaceProjection {
+  const Vector3& p;
+  FacePoint operator()(const std::unique_ptr<const MeshLeaf>& mesh) const {
+    return mesh->faces.Project(mesh->distance, p);
+  }
+  template <typename Primitive>
+  FacePoint operator()(const Primitive& primitive) const {
+    return ProjectToFace(primitive, p);
+  }
+};
+
+double CalcLeaf(const Leaf& leaf, const Vector3& p) { return std::visit(Distance{p}, leaf); }
 
 DistanceSample CalcLeafWithGradient(const Leaf& leaf, const Vector3& p) {
-  switch (leaf.index()) {
-    case 0:
-      return CalcDistanceWithGradient(*std::get_if<Box>(&leaf), p);
-    case 1:
-      return CalcDistanceWithGradient(*std::get_if<Cylinder>(&leaf), p);
-    case 2:
-      return CalcDistanceWithGradient(*std::get_if<Capsule>(&leaf), p);
-    case 3:
-      return CalcDistanceWithGradient(*std::get_if<Sphere>(&leaf), p);
-    default:
-      return (*std::get_if<4>(&leaf))->distance.CalcWithGradient(p);
-  }
+  return std::visit(Gradient{p}, leaf);
 }
 
 FacePoint ProjectLeafToFace(const Leaf& leaf, const Vector3& p) {
-  switch (leaf.index()) {
-    case 0:
-      return ProjectToFace(*std::get_if<Box>(&leaf), p);
-    case 1:
-      return ProjectToFace(*std::get_if<Cylinder>(&leaf), p);
-    case 2:
-      return ProjectToFace(*std::get_if<Capsule>(&leaf), p);
-    case 3:
-      return ProjectToFace(*std::get_if<Sphere>(&leaf), p);
-    default: {
-      const MeshLeaf& mesh = **std::get_if<4>(&leaf);
-      return mesh.faces.Project(mesh.distance, p);
-    }
-  }
+  return std::visit(FaceProjection{p}, leaf);
 }
 
-Leaf MakeLeaf(const Shape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) return *box;
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return *cylinder;
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) return *capsule;
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return *sphere;
-  if (const auto* mesh = std::get_if<Mesh>(&shape)) return std::make_unique<MeshLeaf>(mesh->mesh);
-  const auto* cloud = std::get_if<Cloud>(&shape);
-  PREGRASP_CHECK(cloud != nullptr, shape.index());
-  return std::make_unique<MeshLeaf>(cloud->mesh);
-}
+struct LeafMaker {
+  Leaf operator()(const TriangleMesh& mesh) const { return std::make_unique<MeshLeaf>(mesh); }
+  template <typename Primitive>
+  Leaf operator()(const Primitive& primitive) const {
+    return primitive;
+  }
+};
+
+Leaf MakeLeaf(const Shape& shape) { return VisitLeaf(shape, LeafMaker{}); }
 
 void PartsDistance::Add(const Shape& shape, const RigidTransform& X_BP) {
-  if (const auto* whole = std::get_if<Union>(&shape)) {
-    for (const PlacedShape& part : whole->parts) Add(part.shape, X_BP * part.X_BP);
-    return;
-  }
-  parts_.push_back({X_BP.inverse(), CalcBounds(shape, X_BP), MakeLeaf(shape)});
+  ForEachLeaf(shape, X_BP, [&](const Shape& leaf, const RigidTransform& X_BL) {
+    parts_.push_back({X_BL.inverse(), CalcBounds(leaf, X_BL), MakeLeaf(leaf)});
+  });
 }
 
 double PartsDistance::Calc(const Vector3& p_B) const {

@@ -1,17 +1,15 @@
 #include "app/hand/certificate.h"
 
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
-#include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
-#include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/collision_object.h>
 
 #include <array>
 
 #include "app/core/check.h"
+#include "app/geometry/fcl_shape.h"
+#include "app/scene/shape_visit.h"
 
 namespace pregrasp {
 namespace {
@@ -26,49 +24,21 @@ struct Part {
   std::shared_ptr<const MeshDistance> inside;  // for a mesh
 };
 
-Geometry MakeMesh(const TriangleMesh& mesh) {
-  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  std::vector<Vector3> vertices;
-  std::vector<fcl::Triangle> triangles;
-  for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) vertices.emplace_back(mesh.V.row(i));
-  for (Eigen::Index i = 0; i < mesh.F.rows(); ++i) {
-    triangles.emplace_back(mesh.F(i, 0), mesh.F(i, 1), mesh.F(i, 2));
+struct InsideMaker {
+  using Inside = std::shared_ptr<const MeshDistance>;
+  Inside operator()(const TriangleMesh& mesh) const {
+    return std::make_shared<const MeshDistance>(mesh);
   }
-  model->beginModel();
-  model->addSubModel(vertices, triangles);
-  model->endModel();
-  return model;
-}
-
-struct GeometryMaker {
-  Geometry operator()(const Box& box) const { return std::make_shared<fcl::Boxd>(box.size); }
-  Geometry operator()(const Cylinder& c) const {
-    return std::make_shared<fcl::Cylinderd>(c.radius, c.height);
+  template <typename Primitive>
+  Inside operator()(const Primitive& /*has an inside*/) const {
+    return nullptr;
   }
-  Geometry operator()(const Capsule& c) const {
-    return std::make_shared<fcl::Capsuled>(c.radius, c.height);
-  }
-  Geometry operator()(const Sphere& s) const { return std::make_shared<fcl::Sphered>(s.radius); }
-  Geometry operator()(const Mesh& mesh) const { return MakeMesh(mesh.mesh); }
-  Geometry operator()(const Cloud& cloud) const { return MakeMesh(cloud.mesh); }
-  Geometry operator()(const Union& /*whole*/) const { return nullptr; }
 };
 
-void AddParts(const Shape& shape, const RigidTransform& X_BP, int body, std::vector<Part>* parts) {
-  if (const auto* whole = std::get_if<Union>(&shape)) {
-    for (const PlacedShape& part : whole->parts) {
-      AddParts(part.shape, X_BP * part.X_BP, body, parts);
-    }
-    return;
-  }
-  Part part{std::visit(GeometryMaker{}, shape), body, X_BP, nullptr};
-  part.geometry->computeLocalAABB();
-  if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-    part.inside = std::make_shared<const MeshDistance>(mesh->mesh);
-  } else if (const auto* cloud = std::get_if<Cloud>(&shape)) {
-    part.inside = std::make_shared<const MeshDistance>(cloud->mesh);
-  }
-  parts->push_back(std::move(part));
+void AddParts(const Shape& shape, int body, std::vector<Part>* parts) {
+  ForEachLeaf(shape, RigidTransform::Identity(), [&](const Shape& leaf, const RigidTransform& X) {
+    parts->push_back({MakeFclShape(leaf), body, X, VisitLeaf(leaf, InsideMaker{})});
+  });
 }
 
 Geometry MakeCapsule(const HandCapsule& capsule, double radius) {
@@ -111,7 +81,7 @@ HandCertificate::HandCertificate(const HandModel& hand, const std::vector<const 
     impl->X_LC.push_back(MakeTransform(FrameFromNormal(nhat), 0.5 * (capsule.p_LA + capsule.p_LB)));
   }
   for (const Shape* shape : shapes) {
-    AddParts(*shape, RigidTransform::Identity(), impl->num_bodies++, &impl->parts);
+    AddParts(*shape, impl->num_bodies++, &impl->parts);
   }
   impl_ = std::move(impl);
 }

@@ -2,6 +2,7 @@
 
 #include "app/core/check.h"
 #include "app/hand/segment_distance.h"
+#include "app/scene/shape_visit.h"
 
 namespace pregrasp {
 namespace {
@@ -53,38 +54,27 @@ void AddDistanceGradient(const HandModel& hand, const HandPose& pose, const Hand
 }
 
 HandObstacles::HandObstacles(const std::vector<const Shape*>& shapes) {
-  for (const Shape* shape : shapes) AddParts(*shape, RigidTransform::Identity(), num_bodies_++);
+  for (const Shape* shape : shapes) AddParts(*shape, num_bodies_++);
 }
 
-void HandObstacles::AddParts(const Shape& shape, const RigidTransform& X_BP, int body) {
-  if (const auto* whole = std::get_if<Union>(&shape)) {
-    for (const PlacedShape& part : whole->parts) AddParts(part.shape, X_BP * part.X_BP, body);
-    return;
-  }
-  Part part;
-  part.body = body;
-  part.X_BP = X_BP;
-  const auto set = [&](const auto& primitive) {
-    part.shape = primitive;
-    part.bound = BoundOf(primitive);
-  };
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    set(*box);
-  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    set(*cylinder);
-  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    set(*capsule);
-  } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    set(*sphere);
-  } else {
-    const auto* mesh = std::get_if<Mesh>(&shape);
-    const TriangleMesh& surface = mesh != nullptr ? mesh->mesh : std::get<Cloud>(shape).mesh;
-    auto distance = std::make_shared<const MeshDistance>(surface);
-    part.p_PCenter = distance->bounds().center();
-    part.bound = 0.5 * distance->bounds().diagonal().norm();
-    part.shape = std::move(distance);
-  }
-  parts_.push_back(std::move(part));
+void HandObstacles::AddParts(const Shape& shape, int body) {
+  ForEachLeaf(shape, RigidTransform::Identity(), [&](const Shape& leaf, const RigidTransform& X) {
+    Part part;
+    part.body = body;
+    part.X_BP = X;
+    VisitLeaf(leaf, [&](const auto& kind) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, TriangleMesh>) {
+        auto distance = std::make_shared<const MeshDistance>(kind);
+        part.p_PCenter = distance->bounds().center();
+        part.bound = 0.5 * distance->bounds().diagonal().norm();
+        part.shape = std::move(distance);
+      } else {
+        part.shape = kind;
+        part.bound = BoundOf(kind);
+      }
+    });
+    parts_.push_back(std::move(part));
+  });
 }
 
 HandObstacles::Placed HandObstacles::Place(const std::vector<RigidTransform>& X_WB) const {

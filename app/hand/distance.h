@@ -74,7 +74,7 @@ class HandObstacles {
     Vector3 p_PCenter = Vector3::Zero();  ///< of a sphere around the part
     double bound = 0.0;                   ///< its radius
   };
-  void AddParts(const Shape& shape, const RigidTransform& X_BP, int body);
+  void AddParts(const Shape& shape, int body);
 
   int num_bodies_ = 0;
   std::vector<Part> parts_;

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "app/core/error.h"
-#include "app/hand/obj_text.h"
+#include "app/geometry/obj_text.h"
 
 namespace pregrasp {
 
@@ -19,7 +19,7 @@ std::vector<HandShape> LoadHandShapes(const HandModel& hand) {
       if (!in) throw InputError(visual.file.string(), "", "a readable OBJ file", "");
       std::stringstream text;
       text << in.rdbuf();
-      mesh = std::make_shared<const TriangleMesh>(ReadObj(text.str(), visual.file.string()));
+      mesh = std::make_shared<const TriangleMesh>(ParseObj(text.str(), visual.file.string()));
     }
     shapes.push_back({visual.link, mesh, visual.rgba});
   }

@@ -17,7 +17,7 @@ struct HandShape {
 };
 
 /// What to draw of a hand: the visuals of its URDF. A mesh that several links use is shared.
-/// @throws InputError  a file that is missing or not as ReadObj wants it.
+/// @throws InputError  a file that is missing or not as ParseObj wants it.
 std::vector<HandShape> LoadHandShapes(const HandModel& hand);
 
 /// Those of ShadowHand(), read once.

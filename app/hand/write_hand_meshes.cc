@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "app/geometry/obj_text.h"
 #include "app/hand/hand_meshes.h"
-#include "app/hand/obj_text.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   }
   for (const auto& [name, mesh] : pregrasp::BuildHandMeshes()) {
     std::ofstream out(std::filesystem::path(argv[1]) / (name + ".obj"));
-    out << pregrasp::WriteObj(mesh);
+    out << pregrasp::FormatObj(mesh, 6);
     if (!out) {
       std::fprintf(stderr, "%s: cannot write %s.obj\n", argv[1], name.c_str());
       return 2;

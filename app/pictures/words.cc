@@ -13,13 +13,32 @@ double Rounded(double mm) {
   return rounded == 0.0 ? 0.0 : rounded;
 }
 
-std::string DescribeSizes(const Shape& shape) {
-  if (const Box* box = std::get_if<Box>(&shape)) {
-    return fmt::format("box {} x {} x {} mm", Rounded(1e3 * box->size.x()),
-                       Rounded(1e3 * box->size.y()), Rounded(1e3 * box->size.z()));
+struct Sizes {
+  std::string operator()(const Box& box) const {
+    return fmt::format("box {} x {} x {} mm", Rounded(1e3 * box.size.x()),
+                       Rounded(1e3 * box.size.y()), Rounded(1e3 * box.size.z()));
   }
-  return ShapeKind(shape);
-}
+  std::string operator()(const Cylinder& cylinder) const {
+    return fmt::format("cylinder {} mm across, {} mm high", Rounded(2e3 * cylinder.radius),
+                       Rounded(1e3 * cylinder.height));
+  }
+  std::string operator()(const Capsule& capsule) const {
+    return fmt::format("capsule {} mm across, {} mm long", Rounded(2e3 * capsule.radius),
+                       Rounded(1e3 * (capsule.height + 2.0 * capsule.radius)));
+  }
+  std::string operator()(const Sphere& sphere) const {
+    return fmt::format("sphere {} mm across", Rounded(2e3 * sphere.radius));
+  }
+  std::string operator()(const Mesh& mesh) const {
+    return fmt::format("mesh of {} triangles", mesh.mesh.F.rows());
+  }
+  std::string operator()(const Cloud& cloud) const {
+    return fmt::format("cloud of {} points", cloud.points.rows());
+  }
+  std::string operator()(const Union& whole) const {
+    return fmt::format("union of {}", whole.parts.size());
+  }
+};
 
 }  // namespace
 
@@ -33,8 +52,8 @@ std::vector<std::string> internal::DescribeScene(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     const std::string mass =
         body.movable() ? fmt::format("{:.4g} g", 1e3 * body.mass_properties->mass) : "fixed";
-    lines.push_back(fmt::format("{}\t{}, {}, friction {:.3g}", body.name, DescribeSizes(body.shape),
-                                mass, body.friction));
+    lines.push_back(fmt::format("{}\t{}, {}, friction {:.3g}", body.name,
+                                std::visit(Sizes{}, body.shape), mass, body.friction));
   }
   lines.push_back(fmt::format("fingertips\tfriction {:.3g}, at most {:.3g} N",
                               scene.fingertips.friction, scene.fingertips.max_force));

@@ -9,8 +9,8 @@
 #include "app/core/json_reader.h"
 #include "app/core/json_text.h"
 #include "app/core/json_values.h"
+#include "app/geometry/obj_text.h"
 #include "app/recording/checked_file.h"
-#include "app/recording/obj_file.h"
 
 namespace pregrasp {
 namespace {
@@ -77,7 +77,7 @@ class ShapeWriter {
   std::string Write(const char* ending, const TriangleMesh& mesh) const {
     MakeFolder(directory_ / "meshes");
     std::string file = "meshes/" + name_ + ending;
-    WriteObj(directory_ / file, mesh);
+    WriteFile(directory_ / file, FormatObj(mesh));
     return file;
   }
 
@@ -91,7 +91,8 @@ TriangleMesh ReadMesh(const JsonReader& file, const std::filesystem::path& direc
       *relative.begin() == "..") {
     file.Fail("a path inside the run directory");
   }
-  return ReadObj(directory / relative);
+  const std::filesystem::path path = directory / relative;
+  return ParseObj(ReadFile(path), path.string());
 }
 
 Shape ReadShape(const JsonReader& reader, const std::filesystem::path& directory) {

@@ -6,7 +6,6 @@
 
 #include "app/core/error.h"
 #include "app/core/json_text.h"
-#include "app/recording/obj_file.h"
 #include "tests/recording/sample_run.h"
 
 namespace pregrasp {
@@ -191,28 +190,6 @@ TEST(SceneFileTest, WhatIsWrongIsNamed) {
               json["bodies"][1]["X_WB"]["q"] = {1, 0, 0, 0};
             }).find("bodies[1].X_WB.R: expected the rotation that q gives"),
             std::string::npos);
-}
-
-TEST(ObjFileTest, OnlyTriangleMeshesAreRead) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "mesh.obj";
-  const auto error_of = [&](const std::string& text) -> std::string {
-    WriteFile(file, text);
-    try {
-      ReadObj(file);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "none";
-  };
-  const std::string good = "# a comment\nv 0 0 0\nv 1 0 0\nv 0 1e-3 0\n\nf 1 2 3\n";
-  EXPECT_EQ(error_of(good), "none");
-  EXPECT_NE(error_of(good + "f 1 2 4\n").find("vertices that exist"), std::string::npos);
-  EXPECT_NE(error_of(good + "f 1 2 0\n").find("vertices that exist"), std::string::npos);
-  EXPECT_NE(error_of(good + "f 1/1 2/2 3/3\n").find("mesh.obj:7: "), std::string::npos);
-  EXPECT_NE(error_of("v 0 0\n").find("mesh.obj:1: "), std::string::npos);
-  EXPECT_NE(error_of("v 0 0 0 1\n").find("mesh.obj:1: "), std::string::npos);
-  EXPECT_NE(error_of("usemtl wood\n").find("mesh.obj:1: "), std::string::npos);
 }
 
 }  // namespace

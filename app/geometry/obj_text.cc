@@ -1,13 +1,15 @@
-#include "app/recording/obj_file.h"
+#include "app/geometry/obj_text.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <charconv>
-#include <string>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
 #include "app/core/error.h"
 #include "app/core/text.h"
-#include "app/recording/checked_file.h"
 
 namespace pregrasp {
 namespace {
@@ -33,23 +35,23 @@ Matrix ToRows(const std::vector<Number>& numbers) {
 
 }  // namespace
 
-void WriteObj(const std::filesystem::path& file, const TriangleMesh& mesh) {
-  CheckedFile out(file);
+std::string FormatObj(const TriangleMesh& mesh, std::optional<int> decimals) {
+  std::string text;
   for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
-    out.Write("v");
-    for (int k = 0; k < 3; ++k) out.Write(' ' + FormatDouble(mesh.V(i, k)));
-    out.Write("\n");
+    text += 'v';
+    for (int k = 0; k < 3; ++k) {
+      text += ' ' + (decimals ? fmt::format("{:.{}f}", mesh.V(i, k), *decimals)
+                              : FormatDouble(mesh.V(i, k)));
+    }
+    text += '\n';
   }
   for (Eigen::Index i = 0; i < mesh.F.rows(); ++i) {
-    out.Write("f");
-    for (int k = 0; k < 3; ++k) out.Write(' ' + std::to_string(mesh.F(i, k) + 1));
-    out.Write("\n");
+    text += fmt::format("f {} {} {}\n", mesh.F(i, 0) + 1, mesh.F(i, 1) + 1, mesh.F(i, 2) + 1);
   }
-  out.Close();
+  return text;
 }
 
-TriangleMesh ReadObj(const std::filesystem::path& file) {
-  const std::string text = ReadFile(file);
+TriangleMesh ParseObj(const std::string& text, const std::string& where) {
   std::vector<double> vertices;
   std::vector<int> faces;
   int line_number = 0;
@@ -62,18 +64,21 @@ TriangleMesh ReadObj(const std::filesystem::path& file) {
     const std::string_view kind = line.substr(0, 2);
     double vertex[3];
     int face[3];
-    if (kind == "v " && ParseThree(line.substr(2), vertex)) {
+    const auto finite = [&] {
+      return std::all_of(vertex, vertex + 3, [](double x) { return std::isfinite(x); });
+    };
+    if (kind == "v " && ParseThree(line.substr(2), vertex) && finite()) {
       vertices.insert(vertices.end(), vertex, vertex + 3);
     } else if (kind == "f " && ParseThree(line.substr(2), face)) {
       for (const int index : face) faces.push_back(index - 1);
     } else {
-      throw InputError(file.string() + ':' + std::to_string(line_number), "",
-                       "\"v x y z\" or \"f i j k\"", '"' + std::string(line.substr(0, 40)) + '"');
+      throw InputError(fmt::format("{}:{}", where, line_number), "", "\"v x y z\" or \"f i j k\"",
+                       '"' + std::string(line.substr(0, 40)) + '"');
     }
   }
   TriangleMesh mesh{ToRows<MatrixX3>(vertices), ToRows<MatrixX3i>(faces)};
   if (mesh.F.size() > 0 && (mesh.F.minCoeff() < 0 || mesh.F.maxCoeff() >= mesh.V.rows())) {
-    throw InputError(file.string(), "f", "vertices that exist", "one that does not");
+    throw InputError(where, "f", "vertices that exist", "one that does not");
   }
   return mesh;
 }
