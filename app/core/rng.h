@@ -49,6 +49,8 @@ enum class RngStream : std::uint8_t {
   kEvaluationNoise,
   kCompletionProbes,
   kSecondSource,
+  kGraspRefinement,
+  kRefinedGraspIk,
 };
 
 /// Counter-based generator: Philox4x64-10 (Salmon et al., "Parallel random numbers: as easy as 1,

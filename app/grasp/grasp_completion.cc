@@ -33,13 +33,13 @@ class Completion {
              ThreadPool* pool)
       : places_(places),
         config_(config),
-        refinement_(config.grasp),
+        refinement_{config.grasp, config.max_refinement, config.forces, config.max_stiffness_tests},
         generated_(generated),
         fixed_(fixed),
         pool_(pool),
         raw_(generated.size()),
         refinements_(generated.size()) {
-    IkConfig& ik = refinement_.kinematics.ik;
+    IkConfig& ik = refinement_.grasp.kinematics.ik;
     ik.max_starts = config.refinement_starts;
     ik.warm_starts = std::max(1, config.refinement_starts - 1);
   }
@@ -82,23 +82,22 @@ class Completion {
     const std::vector<GraspContact> projected =
         ProjectSpaced(places_, generated_[i].points, fixed_);
     refinements_[i] = std::make_unique<GraspRefinement>(places_, refinement_, projected, fixed_,
-                                                        config_.max_refinement, generated_[i].rng);
+                                                        generated_[i].rng);
     raw_[i] =
         TryGrasp(places_.world(), config_.grasp, projected, places_.X_WB(), generated_[i].rng);
-    if (!raw_[i].feasible()) refinements_[i]->Start(raw_[i]);
+    refinements_[i]->Start(raw_[i]);
   }
 
   // Whether any of many plausible sets holds: where none does, no completion will.
   bool AnyProbeHolds(int* drawn) const {
     const ContactSampler sampler(places_, config_.probes);
-    const std::uint64_t seed = Rng(generated_.front().rng).NextU64();
     const Matrix3 R_WO = places_.X_WB().at(0).linear();
     while (*drawn < config_.max_probes) {
       const int count = std::min(kProbeChunk, config_.max_probes - *drawn);
       std::vector<char> holds((count + kProbeTask - 1) / kProbeTask, 0);
       Run(static_cast<int>(holds.size()), [&](int task) {
         for (int i = task * kProbeTask; i < std::min(count, (task + 1) * kProbeTask); ++i) {
-          Rng rng(seed, RngStream::kCompletionProbes, *drawn + i);
+          Rng rng = generated_.front().rng.Split(RngStream::kCompletionProbes, *drawn + i);
           const auto contacts = sampler.Sample(fixed_, rng);
           if (!contacts) continue;
           if (CalcForceStatus(places_.world(), config_.grasp, *contacts, R_WO) ==
@@ -119,14 +118,15 @@ class Completion {
       if (round == config_.patience && solved_.empty()) return;
       std::vector<int> open;
       for (int i = 0; i < static_cast<int>(raw_.size()); ++i) {
-        const bool failed = !raw_[i].feasible() && raw_[i].status != GraspStatus::kNoPlace;
-        if (failed && refinements_[i]->open()) open.push_back(i);
+        if (raw_[i].status != GraspStatus::kNoPlace && refinements_[i]->open()) open.push_back(i);
       }
       if (open.empty()) return;
-      Run(static_cast<int>(open.size()), [&](int k) { refinements_[open[k]]->Step(solved_); });
-      for (const int i : open) {
-        const auto& found = refinements_[i]->found();
-        if (found) solved_.push_back(found->kinematics->ik.configuration());
+      std::vector<char> found(open.size());
+      Run(static_cast<int>(open.size()),
+          [&](int k) { found[k] = refinements_[open[k]]->Step(solved_) ? 1 : 0; });
+      for (std::size_t k = 0; k < open.size(); ++k) {
+        if (found[k] == 0) continue;
+        solved_.push_back(refinements_[open[k]]->found()->kinematics->ik.configuration());
       }
     }
   }
@@ -148,7 +148,7 @@ class Completion {
 
   const ContactPlaces& places_;
   const CompletionConfig& config_;
-  GraspConfig refinement_;
+  RefinementConfig refinement_;
   std::span<const GeneratedGrasp> generated_;
   const std::vector<GraspContact>& fixed_;
   ThreadPool* pool_;
@@ -176,6 +176,8 @@ void CompletionConfig::Validate() const {
   RequireCount("refinement_starts", refinement_starts, 1);
   RequireCount("patience", patience, 1);
   RequireCount("max_probes", max_probes, 0);
+  RequireCount("max_stiffness_tests", max_stiffness_tests, 0);
+  forces.Validate();
 }
 
 const char* GraspSourceName(GraspSource source) {

@@ -7,6 +7,7 @@
 #include "app/core/thread_pool.h"
 #include "app/grasp/contact_sampler.h"
 #include "app/grasp/feasible_grasp.h"
+#include "app/grasp/grasp_stiffness.h"
 #include "app/networks/grasp_generator.h"
 
 namespace pregrasp {
@@ -17,7 +18,7 @@ struct CompletionConfig {
   /// line: the far side of a thin plate is near.
   double max_refinement = 0.010;
   /// Moved sets put to inverse kinematics, for each sample that is not feasible as it is.
-  int max_solves = 16;
+  int max_solves = 24;
   int refinement_starts = 3;  ///< of inverse kinematics, on each of these
   /// Refinement of all samples ends after so many sets of each without any feasible grasp, raw or
   /// refined.
@@ -25,6 +26,9 @@ struct CompletionConfig {
   /// Contact sets drawn, about 5 us each, where no sample holds as it is; if none of them holds
   /// either, nothing is refined.
   int max_probes = 40000;  ///< 0 to refine whatever there is
+  /// Sets of each sample tested for whether they are stiff enough to lift, as `forces` has it.
+  int max_stiffness_tests = 40;  ///< 0: refinement ends with what is feasible
+  GraspForcesConfig forces;
   SamplerConfig probes;
 
   CompletionConfig() { grasp.kinematics.ik.max_starts = 6; }
@@ -42,7 +46,7 @@ struct CompletedGrasp {
   /// The generated points projected to the object (ProjectSpaced); what `raw` is the test of.
   std::vector<GraspContact> projected;
   GraspResult raw;      ///< without refinement
-  GraspResult result;   ///< the refined grasp if it is feasible, else `raw`
+  GraspResult result;   ///< the refined grasp if one is feasible and not less stiff, else `raw`
   double moved = 0.0;   ///< the farthest a contact was moved by refinement [m]
   int refinements = 0;  ///< moved sets put to inverse kinematics
 
@@ -65,10 +69,11 @@ struct CompletionResult {
   bool hopeless = false;               ///< neither a sample nor any of these sets held
 };
 
-/// Projects generated grasps to the object and tests them; where one is not feasible, refines it
-/// (GraspRefinement). Samples are refined in rounds, one set of each, and begin with the hand poses
-/// that solved others: the same result for any number of threads (design, section 4: r_suc with
-/// refinement, r_suc_raw without). Contacts of `fixed` are kept as they are.
+/// Projects generated grasps to the object and tests them; where one is not feasible, or would give
+/// way when it lifts, refines it (GraspRefinement). Samples are refined in rounds, one set of each,
+/// and begin with the hand poses that solved others: the same result for any number of threads
+/// (design, section 4: r_suc with refinement, r_suc_raw without). Contacts of `fixed` are kept as
+/// they are.
 /// @throws Interrupted.
 CompletionResult CompleteGrasps(const ContactPlaces& places, const CompletionConfig& config,
                                 std::span<const GeneratedGrasp> generated,

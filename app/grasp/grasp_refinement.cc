@@ -8,8 +8,9 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kFailuresToLeaveOut = 2;  // of one set of fingers
-constexpr int kDisturbances = 8;        // draws for a set that was not tried yet
+constexpr int kFailuresToLeaveOut = 6;  // of one set of fingers
+constexpr int kStiffAttempts = 16;      // since a feasible set, for one that is stiff as well
+constexpr int kDisturbances = 16;       // draws for a set that was not tried yet
 // A contact goes farther than its fingertip came, since the hand gives way only part of the way.
 constexpr double kOvershoot = 1.5;
 
@@ -31,18 +32,24 @@ struct GraspRefinement::Pull {
   Pull() { way_O.fill(Vector3::Zero()); }
 };
 
-GraspRefinement::GraspRefinement(const ContactPlaces& places, const GraspConfig& config,
+GraspRefinement::GraspRefinement(const ContactPlaces& places, const RefinementConfig& config,
                                  std::vector<GraspContact> projected,
-                                 const std::vector<GraspContact>& fixed, double reach,
-                                 const Rng& rng)
+                                 const std::vector<GraspContact>& fixed, const Rng& rng)
     : places_(places),
       config_(config),
       projected_(std::move(projected)),
       R_WO_(places.X_WB().at(0).linear()),
-      rng_(rng),
-      choices_(FindChoices(places, projected_, fixed, reach)),
-      holds_(places.world(), config, choices_, R_WO_),
+      rng_(rng.Split(RngStream::kGraspRefinement)),
+      choices_(FindChoices(places, projected_, fixed, config.reach)),
+      holds_(places.world(), config.grasp, choices_, R_WO_),
+      stiffness_(places.world(), config.grasp, config.forces, choices_, R_WO_,
+                 config.max_stiffness_tests),
       choice_(projected_.size(), 0) {}
+
+bool GraspRefinement::open() const {
+  if (exhausted_ || stiff_) return false;
+  return !feasible_ || attempts_since_ < kStiffAttempts;
+}
 
 void GraspRefinement::Start(const GraspAttempt& raw) {
   if (!raw.kinematics) return;
@@ -51,38 +58,56 @@ void GraspRefinement::Start(const GraspAttempt& raw) {
   }
   tried_.insert(choice_);
   last_ = raw.kinematics->ik;
+  if (raw.feasible()) NoteFeasible();
 }
 
-void GraspRefinement::Step(const std::vector<HandConfiguration>& solved) {
-  if (!open()) return;
+void GraspRefinement::NoteFeasible() {
+  stiff_ = config_.max_stiffness_tests == 0 || stiffness_.IsStiff(choice_);
+  if (!feasible_) attempts_since_ = 0;
+  feasible_ = true;
+}
+
+bool GraspRefinement::Step(const std::vector<HandConfiguration>& solved) {
+  if (!open()) return false;
   if (!Propose()) {
     exhausted_ = true;
-    return;
+    return false;
   }
   tried_.insert(choice_);
-  GraspConfig config = config_;
+  GraspConfig config = config_.grasp;
   config.kinematics.ik.reason_starts = 0;
   std::optional<HandConfiguration> start = FindNearest(solved);
   if (!start && last_) start = last_->configuration();
-  GraspAttempt attempt = TryContacts(places_.world(), config, ToContacts(choices_, choice_),
-                                     places_.X_WB(), rng_, start ? &*start : nullptr);
-  rng_.NextU32();
+  GraspAttempt attempt =
+      TryContacts(places_.world(), config, ToContacts(choices_, choice_), places_.X_WB(),
+                  rng_.Split(RngStream::kRefinedGraspIk, solves_), start ? &*start : nullptr);
   ++solves_;
   PREGRASP_CHECK(attempt.kinematics.has_value());
-  if (attempt.feasible()) {
-    found_ = std::move(attempt);
-    return;
-  }
+  ++attempts_since_;
   last_ = attempt.kinematics->ik;
-  ++failures_;
+  if (!attempt.feasible()) {
+    ++failures_;
+    return false;
+  }
+  failures_ = 0;
+  const bool is_first = !feasible_;
+  NoteFeasible();
+  if (!is_first && !stiff_) return false;
+  found_ = std::move(attempt);
+  return true;
 }
 
-// The next set of contacts that holds and was not tried.
+// The next set of contacts that holds, stiffly where one is found, and was not tried.
 bool GraspRefinement::Propose() {
   if (last_ && failures_ >= kFailuresToLeaveOut) LeaveOut();
   if (last_) FollowHand();
   for (int i = 0; i <= kDisturbances; ++i) {
     if (!Hold()) return false;
+    const bool is_stiff = stiffness_.Run(choice_);
+    if (feasible_ && !is_stiff) {
+      Disturb();
+      continue;
+    }
     if (tried_.find(choice_) == tried_.end()) return true;
     Disturb();
   }
@@ -95,7 +120,7 @@ bool GraspRefinement::Hold() {
   ContactChoice start = choice_;
   if (holds_.Run(choice_)) return true;
   for (int& place : start) place = std::min(place, 0);
-  for (const std::vector<Finger>& left_out : DroppableSets(config_.may_drop)) {
+  for (const std::vector<Finger>& left_out : DroppableSets(config_.grasp.may_drop)) {
     choice_ = start;
     for (std::size_t i = 0; i < choices_.size(); ++i) {
       if (std::find(left_out.begin(), left_out.end(), choices_[i].finger) != left_out.end()) {
@@ -112,7 +137,7 @@ bool GraspRefinement::Hold() {
 
 // Leaves out the finger, of those that may be, that stands in the way the most.
 void GraspRefinement::LeaveOut() {
-  if (!config_.may_drop) return;
+  if (!config_.grasp.may_drop) return;
   const Pull pull = CalcPull();
   int worst = kLeftOut;
   double most = -1.0;
@@ -141,7 +166,7 @@ GraspRefinement::Pull GraspRefinement::CalcPull() const {
       if (!finger || static_cast<int>(*finger) == f) pull.way_O[f] += way_O;
     }
   };
-  const IkConfig& ik = config_.kinematics.ik;
+  const IkConfig& ik = config_.grasp.kinematics.ik;
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     if (choice_[i] == kLeftOut) continue;
     const GraspContact& contact = choices_[i].places[choice_[i]];
@@ -189,12 +214,7 @@ void GraspRefinement::FollowHand() {
     for (int place = 0; place < static_cast<int>(choices.places.size()); ++place) {
       const double distance = (TipCentre(choices.places[place]) - wish).norm();
       if (!(distance < least)) continue;
-      bool room = true;
-      for (std::size_t k = 0; k < choices_.size() && room; ++k) {
-        if (k == i || choice_[k] == kLeftOut) continue;
-        room = CalcTipGap(choices.places[place], choices_[k].places[choice_[k]]) >= 0.0;
-      }
-      if (!room) continue;
+      if (!HasRoom(choices_, choice_, static_cast<int>(i), place)) continue;
       least = distance;
       nearest = place;
     }

@@ -46,6 +46,17 @@ std::vector<GraspContact> ToContacts(const std::vector<ContactChoices>& choices,
   return contacts;
 }
 
+bool HasRoom(const std::vector<ContactChoices>& choices, const ContactChoice& choice, int contact,
+             int place) {
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (static_cast<int>(i) == contact || choice[i] == kLeftOut) continue;
+    if (!(CalcTipGap(choices[i].places[choice[i]], choices[contact].places[place]) >= 0.0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 HoldSearch::HoldSearch(const GraspWorld& world, const GraspConfig& config,
                        const std::vector<ContactChoices>& choices, const Matrix3& R_WO)
     : world_(world),
@@ -111,16 +122,6 @@ bool HoldSearch::IsHopeless(const ContactChoice& choice) const {
   return most < 0.0;
 }
 
-bool HoldSearch::HasRoom(const ContactChoice& choice, std::size_t contact, int place) const {
-  for (std::size_t i = 0; i < choices_.size(); ++i) {
-    if (i == contact || choice[i] == kLeftOut) continue;
-    if (!(CalcTipGap(choices_[i].places[choice[i]], choices_[contact].places[place]) >= 0.0)) {
-      return false;
-    }
-  }
-  return true;
-}
-
 // Moves single contacts while that brings more of the wrench that is missing most.
 bool HoldSearch::Improve(ContactChoice& choice) const {
   const double enough = kEnough * wrench_.f_max;
@@ -144,7 +145,7 @@ bool HoldSearch::Improve(ContactChoice& choice) const {
         }
         const double way = choices_[i].moved[place];
         const bool better = trial > best_score || (trial == enough && way < best_way);
-        if (!better || !HasRoom(choice, i, place)) continue;
+        if (!better || !HasRoom(choices_, choice, static_cast<int>(i), place)) continue;
         best_contact = i;
         best_place = place;
         best_score = trial;

@@ -27,6 +27,10 @@ inline constexpr int kLeftOut = -1;
 std::vector<GraspContact> ToContacts(const std::vector<ContactChoices>& choices,
                                      const ContactChoice& choice);
 
+/// Whether the tip of one contact, at one of its places, overlaps none of the others'.
+bool HasRoom(const std::vector<ContactChoices>& choices, const ContactChoice& choice, int contact,
+             int place);
+
 /// Moves contacts among their choices until forces hold. Where they do not, the proof is a wrench
 /// that they cannot give: the contact that raises it is moved, to the nearest place that gives
 /// enough of this wrench and of all that were missing before, or else to the one that gives the
@@ -47,7 +51,6 @@ class HoldSearch {
   bool IsHopeless(const ContactChoice& choice) const;
   bool Improve(ContactChoice& choice) const;
   std::vector<double> CalcTotals(const ContactChoice& choice, int without) const;
-  bool HasRoom(const ContactChoice& choice, std::size_t contact, int place) const;
 
   const GraspWorld& world_;
   const GraspConfig& config_;

@@ -193,8 +193,10 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   const std::vector<GraspContact> fixed =
       release.stays ? std::vector<GraspContact>{} : release.pressing;
   const ContactPlaces places(*grasp_world_, X_WB);
+  CompletionConfig config = config_.completion;
+  config.forces = config_.lift.forces;
   CompletionResult completion = pregrasp::CompleteGrasps(
-      places, config_.completion, GenerateGrasps(X_WB, release, path_rank), fixed, pool_);
+      places, config, GenerateGrasps(X_WB, release, path_rank), fixed, pool_);
   set.grasps = std::move(completion.grasps);
   if (!completion.hopeless) {
     GraspSearchConfig search = config_.search;

@@ -195,6 +195,12 @@ Settings GraspsSettings() {
        "rounds after which refinement ends where none is feasible",
        FIELD(completion.patience),
        {}},
+      {"grasps.max_stiffness_tests",
+       Whole(0, 10000),
+       "sets of each sample tested for whether they are stiff enough to lift; 0: what is feasible "
+       "will do",
+       FIELD(completion.max_stiffness_tests),
+       {}},
       {"grasps.max_probes",
        Whole(0, 1e6),
        "contact sets drawn where no sample holds: if none does, nothing is refined",

@@ -70,6 +70,7 @@ std::optional<PlanningContacts> FromSampler(const GraspWorld& world, const Conta
 
 LabelConfig::LabelConfig() {
   completion.max_probes = 0;
+  completion.max_stiffness_tests = 0;
   completion.max_solves = 2;
   completion.grasp.kinematics.ik.max_starts = 3;
   completion.grasp.kinematics.ik.slsqp = false;
