@@ -8,7 +8,7 @@ namespace {
 
 const Schema kLift{"Lift",
                    {"held", "reasons", "text", "height", "shift_mm", "turn_deg", "slip_mm",
-                    "direction_W", "pushes", "soft", "stiff", "step_id"}};
+                    "direction_W", "pushes", "soft", "stiff", "neighbours", "step_id"}};
 
 constexpr int kGraspKib = 20;
 
@@ -117,7 +117,9 @@ Pushed GraspLift(lua_State* L, LuaGrasp& grasp) {
     return {1};
   }
   const auto& lift = std::get<LiftFacts>(grasp.lift->facts.details);
-  RecordWriter(L, kLift)
+  RecordWriter record(L, kLift);
+  PushNeighbours(L, lift.neighbours);
+  record.SetTop("neighbours")
       .Set("held", lift.held)
       .Set("reasons", lift.reasons)
       .Set("text", lift.sentence)

@@ -164,6 +164,8 @@ Pushed PathOptimize(lua_State* L, LuaPath& path, const OptimizeOptions& options)
 Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOptions& options);
 Pushed GraspMotion(lua_State* L, LuaGrasp& grasp, const MotionOptions& options);
 
+void PushNeighbours(lua_State* L, const NeighbourFacts& facts);
+
 /// Calls ipairs on the list on top.
 Pushed PushIpairs(lua_State* L);
 

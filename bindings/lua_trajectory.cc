@@ -16,6 +16,7 @@ Schema MakeCostSchema() {
 }
 const Schema kCostTerms = MakeCostSchema();
 const Schema kRollout{"Rollout", {"cost", "weight", "terms", "X_WO"}};
+const Schema kNeighbours{"NeighbourMotion", {"worst", "moved_mm", "turned_deg", "disturbed"}};
 const Schema kPlanStage{"PlanStage", {"thumb", "index"}};
 const Schema kPlanFinger{"PlanFinger", {"on", "kept", "p_OC", "nhat_O", "p_WTargets"}};
 
@@ -174,6 +175,11 @@ Pushed TrajectoryObject(lua_State* L, LuaTrajectory& trajectory) {
   return {1};
 }
 
+Pushed TrajectoryNeighbours(lua_State* L, LuaTrajectory& trajectory) {
+  PushNeighbours(L, trajectory.facts().neighbours);
+  return {1};
+}
+
 Pushed TrajectoryStages(lua_State* L, LuaTrajectory& trajectory) {
   const std::vector<StageFacts>& stages = trajectory.facts().stages;
   lua_createtable(L, static_cast<int>(stages.size()), 0);
@@ -204,6 +210,14 @@ int TrajectoryToString(lua_State* L) {
 }
 
 }  // namespace
+
+void PushNeighbours(lua_State* L, const NeighbourFacts& facts) {
+  RecordWriter record(L, kNeighbours);
+  record.Set("moved_mm", facts.moved_mm)
+      .Set("turned_deg", facts.turned_deg)
+      .Set("disturbed", facts.disturbed);
+  if (!facts.worst.empty()) record.Set("worst", facts.worst);
+}
 
 Pushed PathOptimize(lua_State* L, LuaPath& path, const OptimizeOptions& options) {
   path.Record();
@@ -257,6 +271,7 @@ const ClassInfo& TrajectoryClass() {
                                   Property<&TrajectoryMaxSpeed>("max_speed"),
                                   Property<&TrajectoryMaxForce>("max_force_N"),
                                   Property<&TrajectorySeconds>("seconds"),
+                                  Property<&TrajectoryNeighbours>("neighbours"),
                                   Property<&TrajectorySteps>("num_steps"),
                                   Property<&TrajectoryStays>("stays_when_released"),
                                   Property<&TrajectoryReleasedShift>("released_shift_mm"),
@@ -271,7 +286,7 @@ const ClassInfo& TrajectoryClass() {
 }
 
 std::vector<const Schema*> TrajectorySchemas() {
-  return {&kCostTerms, &kRollout, &kPlanStage, &kPlanFinger};
+  return {&kCostTerms, &kRollout, &kNeighbours, &kPlanStage, &kPlanFinger};
 }
 
 }  // namespace pregrasp

@@ -150,7 +150,7 @@ LiftResult LiftGrasp(const LiftWorlds& worlds, const WorldState& state, const Gr
 
 bool WithstandsMore(const LiftResult& a, const LiftResult& b) {
   const auto rank = [](const LiftResult& lift) {
-    return std::tuple(lift.held, lift.pushes,
+    return std::tuple(lift.held, !lift.neighbours.disturbed, lift.pushes,
                       static_cast<int>(lift.soft) + static_cast<int>(lift.stiff));
   };
   return rank(a) > rank(b);

@@ -47,7 +47,8 @@ struct LiftWorlds {
 LiftResult LiftGrasp(const LiftWorlds& worlds, const WorldState& state, const GraspResult& grasp,
                      const LiftWay& way, const LiftConfig& config);
 
-/// Whether `a` is to be preferred: it holds; it withstands more pushes; more of soft and stiff.
+/// Whether `a` is to be preferred: it holds; no neighbour is disturbed; it withstands more
+/// pushes; more of soft and stiff.
 /// False where they are alike.
 bool WithstandsMore(const LiftResult& a, const LiftResult& b);
 

@@ -95,6 +95,7 @@ LiftFacts MakeLiftFacts(const Application& a, int number, const LiftResult& lift
     facts.grip.push_back({contact.finger, contact.p_OC, contact.nhat_O,
                           lift.grip.forces_O.row(static_cast<Eigen::Index>(i)).transpose()});
   }
+  facts.neighbours = MakeNeighbourFacts(lift.neighbours, a.job.scene());
   facts.neighbour_moved_mm = 1e3 * lift.neighbour_moved;
   facts.neighbour_turned_deg = lift.neighbour_turned_deg;
   facts.hand =

@@ -94,7 +94,7 @@ void Iterate(Application& a) {
   a.next.optimization = std::make_shared<const MppiState>(std::move(state));
 }
 
-CertifyFacts MakeCertifyFacts(const JobState& state) {
+CertifyFacts MakeCertifyFacts(const JobState& state, const Scene& scene) {
   const Certificate& certificate = *state.certificate;
   const ReleaseResult& release = *state.release;
   CertifyFacts facts;
@@ -118,6 +118,7 @@ CertifyFacts MakeCertifyFacts(const JobState& state) {
   facts.max_tip_overlap_mm = 1e3 * certificate.full.max_tip_overlap;
   facts.unconverged_seconds = certificate.full.unconverged_seconds;
   facts.unresolved_mm = 1e3 * certificate.full.unresolved;
+  facts.neighbours = MakeNeighbourFacts(certificate.neighbours, scene);
   for (const GraspContact& contact : release.pressing) {
     facts.pressing.push_back({contact.finger, contact.p_OC, contact.nhat_O});
   }
@@ -158,7 +159,7 @@ void CertifyBest(Application& a) {
   a.facts.id = fmt::format("path.{}.certify", a.next.path->rank);
   const TraceRow& last = certificate->trace.back();
   SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
-  CertifyFacts facts = MakeCertifyFacts(a.next);
+  CertifyFacts facts = MakeCertifyFacts(a.next, a.job.scene());
   if (certificate->certified) facts.robust = MakeRobustFacts(a);
   a.facts.details = std::move(facts);
 }

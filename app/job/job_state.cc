@@ -52,7 +52,9 @@ Progress CalcProgress(const JobState& state) {
                         state.motion_state->sweeps >= state.motion->config().smoothing_sweeps;
   if (finished && state.lifts.at(state.chosen_grasp)->held &&
       state.motion->Summarize(*state.motion_state).failed == 0) {
-    progress.reached = Reached::kMoved;
+    const bool disturbed = state.certificate->neighbours.disturbed ||
+                           state.lifts.at(state.chosen_grasp)->neighbours.disturbed;
+    progress.reached = disturbed ? Reached::kMoved : Reached::kOk;
   }
   return progress;
 }

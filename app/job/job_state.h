@@ -61,6 +61,7 @@ struct Progress {
     kFeasible,  ///< a grasp is
     kLifted,    ///< and its lift is held
     kMoved,     ///< and the hand moves there without a failed frame
+    kOk,        ///< and no neighbour is disturbed
   };
   Reached reached = Reached::kNothing;
   int feasible = 0, lifted = 0;  ///< grasps

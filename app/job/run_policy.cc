@@ -46,7 +46,7 @@ class Runner {
     for (int rank = 1; rank <= config_.paths && HasPath(graph, rank); ++rank) {
       const Node& end = Try(graph, rank);
       result.reasons.push_back(Explain(end, rank));
-      const bool success = end.progress.reached == Progress::Reached::kMoved;
+      const bool success = end.progress.reached == Progress::Reached::kOk;
       if (success && result.end == nullptr) result.end = &end;
       if (success && !config_.all) break;
     }
@@ -95,8 +95,8 @@ class Runner {
     return timeline_.Do(*node, Verb::kCertify);
   }
 
-  // Tries the lifting grasps in turn; the first whose motion has no failed frame is it, else the
-  // first one.
+  // Tries the lifting grasps in turn; the first that ends in success is it, else the one that came
+  // farthest.
   const Node& MoveHand(const Node& grasps, const std::string& name) {
     const auto state = timeline_.GetState(grasps);
     const std::vector<int> order = OrderGrasps(*state);
@@ -107,9 +107,7 @@ class Runner {
       Report(name + ", hand motion", tried++, config_.motions);
       const Node& moved = FinishMotion(timeline_, grasps, {{"grasp", number}});
       if (best == &grasps || best->progress < moved.progress) best = &moved;
-      if (moved.progress.reached == Progress::Reached::kMoved) {
-        return ShowFrames(timeline_, moved);
-      }
+      if (moved.progress.reached == Progress::Reached::kOk) return ShowFrames(timeline_, moved);
     }
     return *best;
   }
@@ -139,7 +137,15 @@ class Runner {
              pregrasp::Explain(*state->lifts.at(first), timeline_.job().scene());
     }
     const std::string lifted = share + fmt::format(", {} of them lift", end.progress.lifted);
-    if (end.progress.reached != Progress::Reached::kMoved) {
+    if (end.progress.reached == Progress::Reached::kMoved) {
+      const LiftResult& lift = *state->lifts.at(state->chosen_grasp);
+      const NeighbourMotion& neighbours =
+          lift.neighbours.disturbed ? lift.neighbours : state->certificate->neighbours;
+      return head + lifted +
+             fmt::format(", and the hand gets there, but {} is turned or knocked down",
+                         timeline_.job().scene().bodies[neighbours.worst->value].name);
+    }
+    if (end.progress.reached != Progress::Reached::kOk) {
       return head + lifted +
              fmt::format(", but the hand motion fails in {} frames",
                          state->motion->Summarize(*state->motion_state).failed);

@@ -134,10 +134,18 @@ void FillChosen(const Timeline& timeline, const JobState& state, RunSummary& sum
   summary.lift.pushes = lift.pushes;
   summary.lift.soft = lift.soft;
   summary.lift.stiff = lift.stiff;
-  if (timeline.job().world().num_movables() > 1) {
-    summary.neighbours.moved_mm = 1e3 * lift.neighbour_moved;
-    summary.neighbours.turned_deg = lift.neighbour_turned_deg;
-  }
+}
+
+// Of the state's end: of the chosen grasp's lift if there is one, else of the certified hold.
+void FillNeighbours(const Timeline& timeline, const JobState& state, RunSummary& summary) {
+  if (!state.certificate || timeline.job().world().num_movables() < 2) return;
+  const NeighbourMotion& motion = state.chosen_grasp == 0
+                                      ? state.certificate->neighbours
+                                      : state.lifts.at(state.chosen_grasp)->neighbours;
+  const NeighbourFacts facts = MakeNeighbourFacts(motion, timeline.job().scene());
+  summary.neighbours.moved_mm = facts.moved_mm;
+  summary.neighbours.turned_deg = facts.turned_deg;
+  summary.neighbours.worst = facts.worst;
 }
 
 void FillMotion(const JobState& state, RunSummary& summary) {
@@ -230,6 +238,8 @@ std::optional<std::string> StatusAt(const Timeline& timeline, const Node& node) 
       if (IsMotionFinished(*state)) return "motion_failed";
       return std::nullopt;
     case Progress::Reached::kMoved:
+      return "neighbours_disturbed";
+    case Progress::Reached::kOk:
       return "ok";
   }
   return std::nullopt;
@@ -264,6 +274,7 @@ RunSummary Summarize(const Timeline& timeline, const Node& node) {
   FillTrajectory(*state, node, summary);
   FillGrasps(*state, summary);
   FillChosen(timeline, *state, summary);
+  FillNeighbours(timeline, *state, summary);
   FillMotion(*state, summary);
   FillCounts(timeline, node, summary);
   FillObjectMotion(timeline, *state, summary);

@@ -20,6 +20,15 @@ HandFacts MakeHandFacts(const HandConfiguration& hand) {
   return facts;
 }
 
+NeighbourFacts MakeNeighbourFacts(const NeighbourMotion& motion, const Scene& scene) {
+  NeighbourFacts facts;
+  if (motion.worst) facts.worst = scene.bodies.at(motion.worst->value).name;
+  facts.moved_mm = 1e3 * motion.moved;
+  facts.turned_deg = motion.turned_deg;
+  facts.disturbed = motion.disturbed;
+  return facts;
+}
+
 StepDetails MakeDetails(Verb verb) {
   switch (verb) {
     case Verb::kOpen:

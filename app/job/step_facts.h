@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/core/math.h"
+#include "app/dynamics/neighbours.h"
 #include "app/hand/hand_model.h"
 #include "app/job/command.h"
 #include "app/scene/finger.h"
@@ -380,6 +381,22 @@ struct RobustFacts {
   }
 };
 
+/// How far movable bodies other than the object are from where the scene has them.
+struct NeighbourFacts {
+  std::string worst;  ///< the one that moved most, by name; empty if there are none
+  double moved_mm = 0.0, turned_deg = 0.0;  ///< the most of all
+  bool disturbed = false;                   ///< one turned over 30 degrees or fell over 5 cm
+
+  template <typename Self, typename Visit>
+  static void VisitFields(Self& self, Visit&& visit) {
+    visit("worst", self.worst);
+    visit("moved_mm", self.moved_mm);
+    visit("turned_deg", self.turned_deg);
+    visit("disturbed", self.disturbed);
+  }
+};
+NeighbourFacts MakeNeighbourFacts(const NeighbourMotion& motion, const Scene& scene);
+
 struct CertifyFacts {
   int path = 0;
   bool certified = false;
@@ -394,6 +411,7 @@ struct CertifyFacts {
   double unconverged_seconds = 0.0;   ///< in steps that the contact solver left unfinished
   double unresolved_mm = 0.0;         ///< the overlap that these leave, summed
   std::optional<RobustFacts> robust;  ///< of certified plans
+  NeighbourFacts neighbours;          ///< at the end of the hold
   std::vector<PlaceFacts> pressing;
   std::vector<StageFacts> stages;
 
@@ -418,6 +436,7 @@ struct CertifyFacts {
     visit("unconverged_seconds", self.unconverged_seconds);
     visit("unresolved_mm", self.unresolved_mm);
     visit("robust", self.robust);
+    visit("neighbours", self.neighbours);
     visit("pressing", self.pressing);
     visit("stages", self.stages);
   }
@@ -488,9 +507,10 @@ struct LiftFacts {
   Vector3 direction_W = Vector3::UnitZ();
   int pushes = 0;  ///< of six, withstood
   bool soft = false, stiff = false;
-  std::vector<GraspContactFacts> grip;  ///< with the forces it holds by
-  double neighbour_moved_mm = 0.0, neighbour_turned_deg = 0.0;
-  HandFacts hand;  ///< at the grasp
+  std::vector<GraspContactFacts> grip;                          ///< with the forces it holds by
+  NeighbourFacts neighbours;                                    ///< at the end
+  double neighbour_moved_mm = 0.0, neighbour_turned_deg = 0.0;  ///< the most, at any step
+  HandFacts hand;                                               ///< at the grasp
 
   template <typename Self, typename Visit>
   static void VisitFields(Self& self, Visit&& visit) {
@@ -508,6 +528,7 @@ struct LiftFacts {
     visit("soft", self.soft);
     visit("stiff", self.stiff);
     visit("grip", self.grip);
+    visit("neighbours", self.neighbours);
     visit("neighbour_moved_mm", self.neighbour_moved_mm);
     visit("neighbour_turned_deg", self.neighbour_turned_deg);
     visit("hand", self.hand);

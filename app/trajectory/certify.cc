@@ -77,6 +77,7 @@ Certificate CertifyPlan(const World& world, const World& half_world,
   result.full =
       SimulatePlan(world, environment, start, plan, timing, Stepper::kSimbody, &result.trace);
   result.half = SimulatePlan(half_world, environment, start, plan, timing, Stepper::kSimbody);
+  result.neighbours = CalcNeighbourMotion(world, result.full.end);
   CheckHold(result.full, config.hold_seconds, world.config().dt);
   CheckHold(result.half, config.hold_seconds, half_world.config().dt);
   CalcShift(result.full.hold_start, result.full.end, &result.hold_shift, &result.hold_turn_deg);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "app/dynamics/neighbours.h"
 #include "app/trajectory/simulate_plan.h"
 
 namespace pregrasp {
@@ -38,6 +39,7 @@ struct Certificate {
   double hold_turn_deg = 0.0;   ///< [degrees]
   double step_shift = 0.0;      ///< distance between the two final positions [m]
   double step_turn_deg = 0.0;   ///< and orientations [degrees]
+  NeighbourMotion neighbours;   ///< at the end of the hold, at the full step
   std::vector<TraceRow> trace;  ///< every step at the full step, the start first
 };
 

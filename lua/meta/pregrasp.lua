@@ -503,6 +503,12 @@ function Optimizer:shot(options) end
 ---@field terms CostTerms
 ---@field X_WO Transform where the object ends
 
+---@class NeighbourMotion how far movable bodies other than the object are from where the scene has them
+---@field worst? string the one that moved most, 30 degrees counting as much as 5 cm; nil if there are none
+---@field moved_mm number the most of all
+---@field turned_deg number
+---@field disturbed boolean one turned over 30 degrees, or is over 5 cm lower: never a success
+
 ---@class Trajectory
 ---@field certified boolean
 ---@field reasons string[] why not; empty if it is
@@ -515,6 +521,7 @@ function Optimizer:shot(options) end
 ---@field max_speed number of the object [m/s]
 ---@field max_force_N number of a finger
 ---@field seconds number simulated
+---@field neighbours NeighbourMotion at its end
 ---@field num_steps integer
 ---@field stays_when_released boolean under 10 mm and 5 degrees in 1 s without fingers
 ---@field released_shift_mm number
@@ -538,8 +545,9 @@ function Trajectory:grasps(options) end
 ---@field f_min? number smallest normal force of every finger, 0 to 100 N, within the rules at least 0.5; 0.5
 ---@field may_drop? boolean ring and little may be left out; true
 ---@field max_refinement? number how far a contact may be moved, 0 to 0.1 m, within the rules at most 0.01; 0.01
----@field max_solves? integer moved sets of a sample that are put to inverse kinematics, 0 to 1000; 16
+---@field max_solves? integer moved sets of a sample that are put to inverse kinematics, 0 to 1000; 24
 ---@field patience? integer rounds after which refinement ends where none is feasible, 1 to 1000; 8
+---@field max_stiffness_tests? integer sets of each sample tested for whether they are stiff enough to lift; 0: what is feasible will do, 0 to 10000; 40
 ---@field max_probes? integer contact sets drawn where no sample holds: if none does, nothing is refined, 0 to 1e+06; 40000
 ---@field search_sets? integer contact sets that the search draws after the samples, 0 to 1e+06; 20000
 ---@field search_solves? integer of those, put to inverse kinematics, 1 to 10000; 192
@@ -643,6 +651,7 @@ function Grasp:shot(options) end
 ---@field pushes integer of six pushes with half the weight at the top, those that it withstands
 ---@field soft boolean whether the lift holds with fingers of 150 N/m too
 ---@field stiff boolean and with 600 N/m
+---@field neighbours NeighbourMotion at its end
 ---@field step_id string
 
 ---@class Motion

@@ -245,6 +245,9 @@ TEST(LiftTest, OfTwoLiftsTheOneThatHoldsThenWithstandsMoreIsPreferred) {
   LiftResult firmer = firm;
   firmer.stiff = true;
   EXPECT_TRUE(WithstandsMore(firmer, firm));
+  firmer.neighbours.disturbed = true;
+  EXPECT_TRUE(WithstandsMore(weak, firmer));
+  EXPECT_TRUE(WithstandsMore(firmer, dropped));
 }
 
 TEST(LiftTest, ALiftThatIsNotANumberDoesNotHold) {

@@ -104,6 +104,30 @@ TEST_F(CertifyTest, AFingertipInsideTheTableIsNotCertified) {
   EXPECT_EQ(result.reasons.front(), CertifyReason::kTipOverlap);
 }
 
+TEST_F(CertifyTest, ANeighbourThatTheObjectPushesOffTheTableIsDisturbed) {
+  Scene scene = ruler_.scene;
+  Body domino = scene.bodies[0];
+  domino.name = "domino";  // 2 mm from the ruler's end, 8 mm from the table's edge
+  domino.shape = Box{Vector3(0.006, 0.02, 0.04)};
+  domino.X_WB.translation() << -0.005, 0.0, 0.02;
+  domino.mass_properties = CalcMassProperties(domino.shape, 0.005);
+  scene.bodies.push_back(domino);
+  StepConfig half;
+  half.dt = ruler_.world.config().dt / 2;
+  const World world(scene), half_world(scene, half);
+  const EnvironmentDistance environment(scene);
+  const auto certify = [&](double way) {
+    return CertifyPlan(world, half_world, environment, world.InitialState(),
+                       MakeRulerDrag(0.01, way), PlanTiming(), CertifyConfig());
+  };
+  const NeighbourMotion pushed = certify(0.06).neighbours, left = certify(0.0).neighbours;
+  EXPECT_TRUE(pushed.disturbed);
+  EXPECT_GT(pushed.fell, 0.05);
+  EXPECT_EQ(pushed.worst, BodyIndex{static_cast<int>(scene.bodies.size()) - 1});
+  EXPECT_FALSE(left.disturbed);
+  EXPECT_LT(left.moved, 1e-3);
+}
+
 // Eight boxes on each other, the object on top: hard for a solver that sweeps.
 Scene MakeTower() {
   Scene scene = MakeRulerScene();
