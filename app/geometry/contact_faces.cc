@@ -85,44 +85,16 @@ FacePoint ProjectToFace(const Sphere& sphere, const Vector3& p_B) {
 }
 
 MeshFaces::MeshFaces(const TriangleMesh& mesh) {
+  const std::vector<std::array<int, 3>> neighbours = FindNeighbours(mesh);
+  const std::vector<Vector3> nhats = CalcFaceNormals(mesh, neighbours);
   triangles_.resize(mesh.F.rows());
   for (int f = 0; f < mesh.F.rows(); ++f) {
-    Triangle& t = triangles_[f];
-    for (int i = 0; i < 3; ++i) t.p[i] = mesh.V.row(mesh.F(f, i));
-    const Vector3 ab = t.p[1] - t.p[0], ac = t.p[2] - t.p[0];
-    const Vector3 cross = ab.cross(ac);
-    const double longest =
-        std::max({ab.squaredNorm(), ac.squaredNorm(), (t.p[2] - t.p[1]).squaredNorm()});
-    const bool flat = cross.norm() <= 1e-10 * longest;  // as in MeshDistance
-    t.nhat = flat ? Vector3::Zero() : cross.normalized();
+    for (int i = 0; i < 3; ++i) triangles_[f].p[i] = mesh.V.row(mesh.F(f, i));
+    triangles_[f].nhat = nhats[f];
   }
-  const std::vector<std::array<int, 3>> neighbours = FindNeighbours(mesh);
-  BorrowNormals(neighbours);
   FindEdges(neighbours);
   near_.resize(triangles_.size());
   for (std::size_t e = 0; e < edges_.size(); ++e) ListNearEdges(static_cast<int>(e));
-}
-
-// A triangle without area gets the normal of the neighbour across its longest edge.
-void MeshFaces::BorrowNormals(const std::vector<std::array<int, 3>>& neighbours) {
-  constexpr int kRounds = 8;  // slivers may lie side by side
-  for (int round = 0; round < kRounds; ++round) {
-    bool any = false;
-    for (std::size_t f = 0; f < triangles_.size(); ++f) {
-      Triangle& t = triangles_[f];
-      if (!t.nhat.isZero(0.0)) continue;
-      any = true;
-      double longest = -1.0;
-      for (int i = 0; i < 3; ++i) {
-        const double length = (t.p[(i + 1) % 3] - t.p[i]).norm();
-        const int across = neighbours[f][i];
-        if (length <= longest || across < 0 || triangles_[across].nhat.isZero(0.0)) continue;
-        longest = length;
-        t.nhat = triangles_[across].nhat;
-      }
-    }
-    if (!any) return;
-  }
 }
 
 void MeshFaces::FindEdges(const std::vector<std::array<int, 3>>& neighbours) {

@@ -67,7 +67,6 @@ class MeshFaces {
     double head_on = 0.0;  // then the cosine of the angle at which it was met, 1 for straight
   };
 
-  void BorrowNormals(const std::vector<std::array<int, 3>>& neighbours);
   void FindEdges(const std::vector<std::array<int, 3>>& neighbours);
   void ListNearEdges(int edge);
   Walk WalkOver(Place from, Vector3 along, double length) const;

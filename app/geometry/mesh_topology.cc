@@ -92,6 +92,38 @@ std::vector<std::array<int, 3>> FindNeighbours(const TriangleMesh& mesh) {
   return neighbours;
 }
 
+std::vector<Vector3> CalcFaceNormals(const TriangleMesh& mesh,
+                                     const std::vector<std::array<int, 3>>& neighbours) {
+  std::vector<Vector3> nhats(mesh.F.rows());
+  const auto edge = [&](int f, int i) {
+    return Vector3(mesh.V.row(mesh.F(f, (i + 1) % 3)) - mesh.V.row(mesh.F(f, i)));
+  };
+  for (int f = 0; f < mesh.F.rows(); ++f) {
+    const Vector3 cross = edge(f, 0).cross(edge(f, 1));
+    const double longest =
+        std::max({edge(f, 0).squaredNorm(), edge(f, 1).squaredNorm(), edge(f, 2).squaredNorm()});
+    const bool flat = cross.norm() <= 1e-10 * longest;  // as in MeshDistance
+    nhats[f] = flat ? Vector3::Zero() : cross.normalized();
+  }
+  constexpr int kRounds = 8;  // slivers may lie side by side
+  for (int round = 0; round < kRounds; ++round) {
+    bool any = false;
+    for (int f = 0; f < mesh.F.rows(); ++f) {
+      if (!nhats[f].isZero(0.0)) continue;
+      any = true;
+      double longest = -1.0;
+      for (int i = 0; i < 3; ++i) {
+        const int across = neighbours[f][i];
+        if (edge(f, i).norm() <= longest || across < 0 || nhats[across].isZero(0.0)) continue;
+        longest = edge(f, i).norm();
+        nhats[f] = nhats[across];
+      }
+    }
+    if (!any) break;
+  }
+  return nhats;
+}
+
 MeshDefects FindDefects(const TriangleMesh& mesh) {
   MeshDefects defects;
   const std::vector<EdgeSide> sides = ListEdgeSides(mesh);

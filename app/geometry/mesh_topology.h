@@ -11,6 +11,12 @@ namespace pregrasp {
 /// more than one. #F entries.
 std::vector<std::array<int, 3>> FindNeighbours(const TriangleMesh& mesh);
 
+/// Each face's outward unit normal; a face without area borrows that of the neighbour across its
+/// longest edge, and has none (zero) only among others without area. #F entries.
+/// @param neighbours  FindNeighbours of the same mesh.
+std::vector<Vector3> CalcFaceNormals(const TriangleMesh& mesh,
+                                     const std::vector<std::array<int, 3>>& neighbours);
+
 /// What keeps a mesh from being a closed two-manifold.
 struct MeshDefects {
   int open_edges = 0;     ///< edges with one triangle
