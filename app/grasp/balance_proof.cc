@@ -1,7 +1,8 @@
 #include "app/grasp/balance_proof.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "app/core/check.h"
@@ -12,15 +13,10 @@ namespace {
 
 using internal::ScaledContact;
 
-constexpr std::array kLadder{0.1, 0.2,  0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85,
-                             0.9, 0.95, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0,  2.5, 3.0};
-
 // A proof must have more slack than rounding could make; unit wrenches have norms of about 1.
 constexpr double kLeastSlack = 1e-7;
 
 constexpr int kPyramidEdges = 32;
-
-constexpr double kMostForce = 1e3;  // in weights: more than any hand has
 
 std::vector<ScaledContact> Scale(std::span<const WrenchContact> contacts, double torque_scale) {
   std::vector<ScaledContact> scaled;
@@ -63,21 +59,25 @@ struct UnitWrenches {
   }
 };
 
+// The point nearest to the origin in the hull of the weight and all unit wrenches.
+MinNormPoint FindNearest(const UnitWrenches& wrenches, const Vector6& weight,
+                         const MinNormConfig& solver) {
+  const auto support = [&](const Vector6& direction, int, Vector6& point) {
+    point = weight;
+    wrenches.FindFarthest(direction, direction.dot(weight), point);
+  };
+  return FindMinNormPoint(weight, support, solver);
+}
+
 }  // namespace
 
 BalanceProof FindBalanceProof(std::span<const WrenchContact> contacts, double mu,
                               const Vector3& gravity, double torque_scale) {
   const std::vector<ScaledContact> scaled = Scale(contacts, torque_scale);
-  const UnitWrenches wrenches{scaled, mu};
-  const Vector6 weight = WeightDirection(gravity);
-  const auto support = [&](const Vector6& direction, int, Vector6& point) {
-    point = weight;
-    wrenches.FindFarthest(direction, direction.dot(weight), point);
-  };
   MinNormConfig solver;
   solver.tolerance = kLeastSlack;
   solver.separation = std::numeric_limits<double>::infinity();  // the nearest point has most slack
-  const MinNormPoint nearest = FindMinNormPoint(weight, support, solver);
+  const MinNormPoint nearest = FindNearest({scaled, mu}, WeightDirection(gravity), solver);
 
   BalanceProof proof;
   proof.impossible =
@@ -125,13 +125,27 @@ double CalcProofSlack(std::span<const WrenchContact> contacts, double mu, const 
   return slack;
 }
 
-double FindLeastFriction(std::span<const WrenchContact> contacts, const Vector3& gravity,
-                         double torque_scale) {
-  // A wider cone holds the narrower one, so all rungs above the first that can, can.
-  const auto rung = std::partition_point(kLadder.begin(), kLadder.end(), [&](double mu) {
-    return !CanBalanceWeight(contacts, mu, gravity, torque_scale, kMostForce);
-  });
-  return rung == kLadder.end() ? std::numeric_limits<double>::infinity() : *rung;
+double FindProofLimit(std::span<const WrenchContact> contacts, const Vector3& gravity,
+                      double torque_scale) {
+  const std::vector<ScaledContact> scaled = Scale(contacts, torque_scale);
+  // For cones that hold the pyramids of CalcProofSlack, so that it agrees.
+  const auto holds = [&](double mu) {
+    MinNormConfig solver;
+    solver.tolerance = kLeastSlack;
+    solver.separation = 2.0 * kLeastSlack;
+    const MinNormPoint nearest =
+        FindNearest({scaled, mu / std::cos(kPi / kPyramidEdges)}, WeightDirection(gravity), solver);
+    return nearest.status == MinNormPoint::Status::kSeparated && nearest.lower_bound > kLeastSlack;
+  };
+  // A narrower cone lies in a wider one, so the proof holds below any friction at which it does.
+  if (holds(kMostProofFriction)) return std::numeric_limits<double>::infinity();
+  double low = 0.0, high = kMostProofFriction;
+  if (!holds(low)) return 0.0;
+  while (high - low > kProofLimitStep) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 }  // namespace pregrasp

@@ -39,9 +39,14 @@ double CalcProofSlack(std::span<const WrenchContact> contacts, double mu, const 
 bool CanBalanceWeight(std::span<const WrenchContact> contacts, double mu, const Vector3& gravity,
                       double torque_scale, double total);
 
-/// The smallest coefficient of the ladder at which normal forces of 1000 times the weight can
-/// balance it: how far a proof is from failing. Infinity if they cannot at any.
-double FindLeastFriction(std::span<const WrenchContact> contacts, const Vector3& gravity,
-                         double torque_scale);
+/// The largest friction that FindProofLimit tries, and how closely it is found.
+inline constexpr double kMostProofFriction = 3.0;
+inline constexpr double kProofLimitStep = 5e-4;
+
+/// mu*: the friction up to which the proof holds, by bisection, for cones drawn around those of
+/// CalcProofSlack (0.5 % wider than the circular ones): how far a proof is from failing. 0 if it
+/// fails without friction, infinity if it holds at kMostProofFriction.
+double FindProofLimit(std::span<const WrenchContact> contacts, const Vector3& gravity,
+                      double torque_scale);
 
 }  // namespace pregrasp

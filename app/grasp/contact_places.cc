@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "app/grasp/edge_contacts.h"
+
 namespace pregrasp {
 namespace {
 
@@ -27,26 +29,44 @@ bool ContactPlaces::CellRange::empty() const {
 
 ContactPlaces::ContactPlaces(const GraspWorld& world, const std::vector<RigidTransform>& X_WB,
                              const TouchSlack& slack)
+    : ContactPlaces(world, X_WB, slack, {}, 0.0) {}
+
+ContactPlaces::ContactPlaces(const GraspWorld& world, const std::vector<RigidTransform>& X_WB,
+                             const TouchSlack& slack, const std::vector<EdgePoint>& edges,
+                             double edge_slack)
     : world_(world), X_WB_(X_WB), slack_(slack) {
-  pools_ = {MakePool(FingertipRadius(Finger::kThumb)), MakePool(FingertipRadius(Finger::kIndex))};
+  pools_ = {MakePool(Finger::kThumb, edges, edge_slack),
+            MakePool(Finger::kIndex, edges, edge_slack)};
+  for (const Pool& pool : pools_) {
+    has_edges_ = has_edges_ || (!pool.contact.empty() && pool.contact.back().on_edge);
+  }
 }
 
-ContactPlaces::Pool ContactPlaces::MakePool(double radius) const {
+ContactPlaces::Pool ContactPlaces::MakePool(Finger finger, const std::vector<EdgePoint>& edges,
+                                            double edge_slack) const {
   Pool pool;
-  const SurfacePoints& surface = world_.surface();
+  const double radius = FingertipRadius(finger);
   std::vector<std::vector<int>> buckets(27);
+  const auto add = [&](const GraspContact& contact) {
+    buckets[BucketOf(contact.nhat_O)].push_back(static_cast<int>(pool.contact.size()));
+    pool.contact.push_back(contact);
+    pool.centre.emplace_back(contact.p_OC + radius * contact.nhat_O);
+  };
+  const SurfacePoints& surface = world_.surface();
   for (int i = 0; i < surface.P.rows(); ++i) {
     const Vector3 p = surface.P.row(i);
     const Vector3 nhat = surface.N.row(i);
     if (!CanTouch(p, nhat, radius, slack_, world_.object(), world_.environment(), X_WB_)) continue;
-    buckets[BucketOf(nhat)].push_back(static_cast<int>(pool.point.size()));
-    pool.point.push_back(i);
-    pool.centre.emplace_back(p + radius * nhat);
+    add({finger, p, nhat});
+  }
+  for (const GraspContact& contact :
+       FindFreeEdgeContacts(world_, edges, radius, edge_slack, X_WB_)) {
+    add(contact);
   }
   for (std::vector<int>& bucket : buckets) {
     if (!bucket.empty()) pool.buckets.push_back(std::move(bucket));
   }
-  if (!pool.point.empty()) MakeGrid(pool);
+  if (!pool.contact.empty()) MakeGrid(pool);
   return pool;
 }
 
@@ -88,8 +108,9 @@ ContactPlaces::CellRange ContactPlaces::CellsAround(const Pool& pool, const Vect
 }
 
 GraspContact ContactPlaces::At(Finger finger, int place) const {
-  const int point = PoolOf(finger).point.at(place);
-  return {finger, world_.surface().P.row(point), world_.surface().N.row(point)};
+  GraspContact contact = PoolOf(finger).contact.at(place);
+  contact.finger = finger;
+  return contact;
 }
 
 bool ContactPlaces::Allows(const GraspContact& contact) const {
@@ -104,8 +125,8 @@ std::optional<GraspContact> ContactPlaces::Project(Finger finger, const Vector3&
   int nearest = kNone;
   double least = std::numeric_limits<double>::infinity();
   const Pool& pool = PoolOf(finger);
-  for (std::size_t i = 0; i < pool.point.size(); ++i) {
-    const double distance = (world_.surface().P.row(pool.point[i]).transpose() - p_O).squaredNorm();
+  for (std::size_t i = 0; i < pool.contact.size(); ++i) {
+    const double distance = (pool.contact[i].p_OC - p_O).squaredNorm();
     if (!(distance < least)) continue;
     least = distance;
     nearest = static_cast<int>(i);
@@ -118,7 +139,7 @@ std::vector<int> ContactPlaces::FindWithin(Finger finger, const Vector3& p_O,
                                            double distance) const {
   const Pool& pool = PoolOf(finger);
   std::vector<int> found;
-  if (pool.point.empty() || !p_O.allFinite()) return found;
+  if (pool.contact.empty() || !p_O.allFinite()) return found;
   const CellRange range = CellsAround(pool, p_O, distance + FingertipRadius(finger));
   if (range.empty()) return found;
   for (int i = range.low[0]; i <= range.high[0]; ++i) {
@@ -127,8 +148,7 @@ std::vector<int> ContactPlaces::FindWithin(Finger finger, const Vector3& p_O,
       for (int c = pool.cell_start[row + range.low[2]];
            c < pool.cell_start[row + range.high[2] + 1]; ++c) {
         const int place = pool.cell_points[c];
-        const Vector3 p = world_.surface().P.row(pool.point[place]);
-        if ((p - p_O).norm() <= distance) found.push_back(place);
+        if ((pool.contact[place].p_OC - p_O).norm() <= distance) found.push_back(place);
       }
     }
   }
@@ -137,15 +157,15 @@ std::vector<int> ContactPlaces::FindWithin(Finger finger, const Vector3& p_O,
 
 int ContactPlaces::DrawAny(Finger finger, Rng& rng) const {
   const Pool& pool = PoolOf(finger);
-  if (pool.point.empty()) return kNone;
-  if (rng.Uniform() < 0.5) return static_cast<int>(rng.UniformInt(pool.point.size()));
+  if (pool.contact.empty()) return kNone;
+  if (rng.Uniform() < 0.5) return static_cast<int>(rng.UniformInt(pool.contact.size()));
   const std::vector<int>& bucket = pool.buckets[rng.UniformInt(pool.buckets.size())];
   return bucket[rng.UniformInt(bucket.size())];
 }
 
 int ContactPlaces::DrawNear(Finger finger, const Vector3& centre, double distance, Rng& rng) const {
   const Pool& pool = PoolOf(finger);
-  if (pool.point.empty()) return kNone;
+  if (pool.contact.empty()) return kNone;
   const CellRange range = CellsAround(pool, centre, distance);
   if (range.empty()) return kNone;
   // Cells of one row along the last axis are contiguous: count, then pick by number.

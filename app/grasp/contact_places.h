@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "app/core/rng.h"
+#include "app/geometry/sharp_edges.h"
 #include "app/grasp/grasp_world.h"
 
 namespace pregrasp {
 
 /// Where fingertips can be on the object with the bodies at given poses: contacts on its faces
 /// whose fingertip sphere overlaps neither the object nor the surroundings. Immutable, safe to
-/// share between threads.
+/// share between threads. For the question whether an object can be grasped where it stands they
+/// may include places on its edges and corners.
 class ContactPlaces {
  public:
   /// A place by its number among those of one size of fingertip.
@@ -21,12 +23,19 @@ class ContactPlaces {
   /// @param X_WB   every body's pose, the object first.
   ContactPlaces(const GraspWorld& world, const std::vector<RigidTransform>& X_WB,
                 const TouchSlack& slack = {});
+  /// The same with the places that FindFreeEdgeContacts gives for `edges` and this slack between
+  /// sphere and object [m].
+  ContactPlaces(const GraspWorld& world, const std::vector<RigidTransform>& X_WB,
+                const TouchSlack& slack, const std::vector<EdgePoint>& edges, double edge_slack);
 
   const GraspWorld& world() const { return world_; }
   const std::vector<RigidTransform>& X_WB() const { return X_WB_; }
 
-  /// Samples of the object's surface (GraspWorld::surface) where the finger's tip can be.
-  int count(Finger finger) const { return static_cast<int>(PoolOf(finger).point.size()); }
+  /// Samples of the object's surface (GraspWorld::surface) where the finger's tip can be, then
+  /// those of edges.
+  int count(Finger finger) const { return static_cast<int>(PoolOf(finger).contact.size()); }
+  /// Whether places on edges and corners are among them.
+  bool has_edges() const { return has_edges_; }
   GraspContact At(Finger finger, int place) const;
 
   /// Whether the finger can touch there, which need not be at a sample.
@@ -49,7 +58,7 @@ class ContactPlaces {
  private:
   // Samples that one size of fingertip can touch.
   struct Pool {
-    std::vector<int> point;                 // into world.surface()
+    std::vector<GraspContact> contact;
     std::vector<Vector3> centre;            // of the tip
     std::vector<std::vector<int>> buckets;  // of places, by direction of the normal
     std::array<int, 3> cells{};             // a grid over the centres
@@ -62,7 +71,7 @@ class ContactPlaces {
     bool empty() const;
   };
 
-  Pool MakePool(double radius) const;
+  Pool MakePool(Finger finger, const std::vector<EdgePoint>& edges, double edge_slack) const;
   static void MakeGrid(Pool& pool);
   static CellRange CellsAround(const Pool& pool, const Vector3& centre, double distance);
   const Pool& PoolOf(Finger finger) const { return pools_[finger == Finger::kThumb ? 0 : 1]; }
@@ -71,6 +80,7 @@ class ContactPlaces {
   std::vector<RigidTransform> X_WB_;
   TouchSlack slack_;
   std::array<Pool, 2> pools_;  // thumb, other fingers
+  bool has_edges_ = false;
 };
 
 }  // namespace pregrasp

@@ -9,7 +9,9 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kTries = 8;  // draws of one contact before the set is given up
+constexpr int kTries = 8;                 // draws of one contact before the set is given up
+constexpr double kBesideOpposite = 0.02;  // [m], between tip centres
+
 bool IsThumb(Finger finger) { return finger == Finger::kThumb; }
 
 void RequireShare(const char* field, double value) {
@@ -62,9 +64,15 @@ std::optional<GraspContact> ContactSampler::DrawOpposite(const GraspContact& fro
     if (phi > -1e-6) break;
     t += std::max(-phi, 1e-5);
   }
-  const GraspContact contact = world_.ContactNear(finger, from.p_OC + t * along);
-  if (!places_.Allows(contact)) return std::nullopt;
-  return contact;
+  const Vector3 p_out = from.p_OC + t * along;
+  const GraspContact contact = world_.ContactNear(finger, p_out);
+  if (places_.Allows(contact)) return contact;
+  if (!places_.has_edges()) return std::nullopt;
+  // The tip has no room on that face, but perhaps on an edge of it.
+  const int place =
+      places_.DrawNear(finger, FingertipCentre(finger, p_out, along), kBesideOpposite, rng);
+  if (place == ContactPlaces::kNone) return std::nullopt;
+  return places_.At(finger, place);
 }
 
 bool ContactSampler::Fits(const GraspContact& contact, const std::vector<GraspContact>& placed,

@@ -35,6 +35,11 @@ void RequireCount(const char* field, int value, int least = 1) {
   }
 }
 
+bool HasEdge(const std::vector<GraspContact>& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(),
+                     [](const GraspContact& contact) { return contact.on_edge; });
+}
+
 class Searcher {
  public:
   Searcher(const ContactPlaces& places, const GraspSearchConfig& config,
@@ -91,6 +96,7 @@ void GraspSearchConfig::Validate() const {
   grasp.Validate();
   sampler.Validate();
   RequireCount("max_sets", max_sets, 0);
+  RequireCount("max_plausible", max_plausible);
   RequireCount("max_solves", max_solves);
   RequireCount("max_found", max_found);
 }
@@ -124,7 +130,7 @@ GraspSearchResult SearchGrasps(const ContactPlaces& places, const GraspSearchCon
   const auto done = [&] {
     return stats.feasible >= config.max_found || stats.solved >= config.max_solves;
   };
-  while (stats.drawn < config.max_sets && !done()) {
+  while (stats.drawn < config.max_sets && stats.plausible < config.max_plausible && !done()) {
     ThrowIfInterrupted();
     const int first = stats.drawn;
     const int batch = std::min(kBatch, config.max_sets - first);
@@ -132,6 +138,7 @@ GraspSearchResult SearchGrasps(const ContactPlaces& places, const GraspSearchCon
     std::vector<int> held;
     for (int i = 0; i < batch; ++i) {
       stats.plausible += sets[i].outcome != Outcome::kNotDrawn;
+      stats.on_edges += HasEdge(sets[i].contacts);
       stats.tried += sets[i].outcome == Outcome::kNotHeld;
       if (sets[i].outcome == Outcome::kHeld) held.push_back(i);
     }

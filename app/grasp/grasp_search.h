@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "app/core/thread_pool.h"
@@ -17,6 +18,8 @@ struct GraspSearchConfig {
   GraspConfig grasp;
   SamplerConfig sampler;
   int max_sets = 100000;  ///< contact sets drawn, about 5 us each; 0 does not search
+  /// Stop after the batch in which so many sets within reach were put to the forces.
+  int max_plausible = std::numeric_limits<int>::max();
   int max_solves =
       1000;  ///< of those, sets that may go on to inverse kinematics: milliseconds each
   /// Stop when so many grasps are found; what is found in the same group of 16 sets comes along.
@@ -31,12 +34,14 @@ GraspSearchConfig MakeSecondSourceConfig();
 
 /// How far the drawn sets came.
 struct GraspSearchStats {
-  int drawn = 0;      ///< attempts to draw a set
-  int plausible = 0;  ///< sets drawn
-  int held = 0;       ///< of those, with forces as a grasp needs them
-  int solved = 0;     ///< of those, put to inverse kinematics before the search stopped
-  int reached = 0;    ///< of those, within the hand's reach, collisions aside
-  int feasible = 0;   ///< of those, feasible grasps
+  int drawn = 0;  ///< attempts to draw a set
+  int plausible =
+      0;  ///< sets drawn: where tips can be, no nearer and farther than a hand brings them
+  int on_edges = 0;  ///< of those, sets with a contact on an edge or corner
+  int held = 0;      ///< of the plausible ones, with forces as a grasp needs them
+  int solved = 0;    ///< of those, put to inverse kinematics before the search stopped
+  int reached = 0;   ///< of those, within the hand's reach, collisions aside
+  int feasible = 0;  ///< of those, feasible grasps
   /// Sets put to the whole test: plausible ones that failed at the forces, and those solved.
   int tried = 0;
 };

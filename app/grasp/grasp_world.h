@@ -13,11 +13,13 @@
 namespace pregrasp {
 
 /// A fingertip's place on the object, in its frame O: on the true surface, with the outward unit
-/// normal. Of a grasp it lies on a face, as GraspWorld::ContactNear makes it.
+/// normal. Of a grasp it lies on a face, as GraspWorld::ContactNear makes it; where the start is
+/// judged it may also lie on an edge or corner (edge_contacts.h).
 struct GraspContact {
   Finger finger = Finger::kThumb;
   Vector3 p_OC = Vector3::Zero();
   Vector3 nhat_O = Vector3::UnitZ();
+  bool on_edge = false;
 };
 
 /// The finger's contact; null if it has none.

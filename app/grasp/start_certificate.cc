@@ -1,7 +1,12 @@
 #include "app/grasp/start_certificate.h"
 
+#include <fmt/format.h>
+
+#include <limits>
+
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/grasp/edge_contacts.h"
 
 namespace pregrasp {
 
@@ -29,6 +34,21 @@ std::optional<GraspResult> FindFeasible(const GraspWorld& world,
   return std::nullopt;
 }
 
+void CountPoints(const GraspWorld& world, const std::vector<EdgePoint>& edges,
+                 const std::vector<GraspContact>& touched, StartCertificate& certificate) {
+  certificate.surface_points = static_cast<int>(world.surface().P.rows());
+  certificate.edge_points = static_cast<int>(edges.size());
+  const GraspContact* last = nullptr;
+  for (const GraspContact& contact : touched) {
+    if (!contact.on_edge) {
+      ++certificate.reachable_points;
+    } else if (last == nullptr || last->p_OC != contact.p_OC) {
+      ++certificate.reachable_edge_points;
+    }
+    if (contact.on_edge) last = &contact;
+  }
+}
+
 }  // namespace
 
 const char* StartVerdictName(StartVerdict verdict) {
@@ -37,8 +57,9 @@ const char* StartVerdictName(StartVerdict verdict) {
 }
 
 StartCertificateConfig::StartCertificateConfig() {
-  search.max_sets = 200000;
-  search.max_solves = 500;
+  search.max_sets = 20000000;  // a minute or two, where hardly any set is within reach
+  search.max_plausible = kLeastWithinReach;
+  search.max_solves = std::numeric_limits<int>::max();
   search.grasp.kinematics.ik.max_starts = 20;
   search.grasp.kinematics.reach_starts = 20;
   search.sampler.slack.environment = search.grasp.kinematics.ik.tip_tolerance;
@@ -46,15 +67,17 @@ StartCertificateConfig::StartCertificateConfig() {
 
 void StartCertificateConfig::Validate() const {
   search.Validate();
-  if (search.max_sets < kLeastTried) {
-    throw InputError("start_certificate", "search.max_sets", "at least 700",
-                     std::to_string(search.max_sets));
+  if (search.max_plausible < kLeastWithinReach) {
+    throw InputError("start_certificate", "search.max_plausible",
+                     fmt::format("at least {}", kLeastWithinReach),
+                     std::to_string(search.max_plausible));
   }
 }
 
-std::vector<WrenchContact> FindReachableContacts(const GraspWorld& world,
-                                                 const IkConfig& kinematics,
-                                                 const std::vector<RigidTransform>& X_WB) {
+std::vector<GraspContact> FindReachableContacts(const GraspWorld& world, const IkConfig& kinematics,
+                                                const std::vector<EdgePoint>& edges,
+                                                const std::vector<RigidTransform>& X_WB,
+                                                ThreadPool& pool) {
   // A feasible grasp may hold a tip this far from where it touches, and a contacting link this deep
   // in the object: what a tip cannot reach even so, no grasp touches.
   TouchSlack slack;
@@ -71,7 +94,11 @@ std::vector<WrenchContact> FindReachableContacts(const GraspWorld& world,
       contacts.push_back({Finger::kIndex, p, nhat});
     }
   }
-  return world.ToWrenchContacts(contacts);
+  // No grasp uses these, so nothing that it tolerates in the surroundings has to be allowed here.
+  const std::vector<GraspContact> on_edges =
+      FindOuterEdgeContacts(world, edges, radius, kinematics.tip_tolerance, X_WB, pool);
+  contacts.insert(contacts.end(), on_edges.begin(), on_edges.end());
+  return contacts;
 }
 
 StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateConfig& config,
@@ -81,22 +108,26 @@ StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateCon
   config.Validate();
   const std::vector<RigidTransform> X_WB = world.StartPoses();
   const IkConfig& kinematics = config.search.grasp.kinematics.ik;
-  const std::vector<WrenchContact> reachable = FindReachableContacts(world, kinematics, X_WB);
+  const std::vector<EdgePoint> edges =
+      FindEdgePoints(world.scene().object().shape, world.surface().spacing, kLeastFan);
+  const std::vector<GraspContact> touched =
+      FindReachableContacts(world, kinematics, edges, X_WB, pool);
+  const std::vector<WrenchContact> reachable = world.ToWrenchContacts(touched);
   const WrenchConfig wrench = world.MakeWrenchConfig(0.0, X_WB.at(0).linear());
 
   StartCertificate certificate;
   certificate.mu = wrench.mu;
-  certificate.surface_points = static_cast<int>(world.surface().P.rows());
-  certificate.reachable_points = static_cast<int>(reachable.size());
   certificate.spacing = world.surface().spacing;
+  CountPoints(world, edges, touched, certificate);
   if (wrench.gravity.norm() > 0.0) {  // without weight there is nothing to prove
-    certificate.mu_star = FindLeastFriction(reachable, wrench.gravity, wrench.torque_scale);
+    certificate.mu_star = FindProofLimit(reachable, wrench.gravity, wrench.torque_scale);
     certificate.proof = FindBalanceProof(reachable, wrench.mu, wrench.gravity, wrench.torque_scale);
   }
   if (certificate.proof.impossible) {
     certificate.proof_slack = CalcProofSlack(reachable, wrench.mu, wrench.gravity,
                                              wrench.torque_scale, certificate.proof.direction);
-    if (certificate.proof_slack > 0.0) {
+    // Between the samples of a face the proof must hold too.
+    if (certificate.proof_slack > 0.0 && certificate.proof.covered >= certificate.spacing) {
       certificate.verdict = StartVerdict::kCertified;
       return certificate;
     }
@@ -104,8 +135,9 @@ StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateCon
   std::optional<GraspResult> example =
       FindFeasible(world, config, generated, X_WB, pool, &certificate.search);
   if (!example) {
-    GraspSearchResult search =
-        SearchGrasps(world, config.search, {}, X_WB, config.seed, pool, progress);
+    const ContactPlaces places(world, X_WB, config.search.sampler.slack, edges,
+                               kinematics.tip_tolerance);
+    GraspSearchResult search = SearchGrasps(places, config.search, {}, config.seed, pool, progress);
     search.stats.tried += certificate.search.tried;
     certificate.search = search.stats;
     if (!search.found.empty()) example = std::move(search.found.front());

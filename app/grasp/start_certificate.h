@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -18,8 +19,9 @@ enum class StartVerdict {
 const char* StartVerdictName(StartVerdict verdict);
 
 struct StartCertificateConfig {
-  /// Of the search; inverse kinematics with IkConfig's 20 restarts. A set counts as within reach
-  /// unless all of them fail without collision too.
+  /// Of the search: kLeastWithinReach sets, and every one that forces hold goes to inverse
+  /// kinematics, with IkConfig's 20 restarts. A set counts as reached unless all of them fail
+  /// without collision too.
   GraspSearchConfig search;
   std::uint64_t seed = 1;
 
@@ -27,31 +29,39 @@ struct StartCertificateConfig {
   void Validate() const;
 };
 
-/// The searched verdict means little below so many sets (the project's definition).
-inline constexpr int kLeastTried = 700;
+/// The searched verdict means little below so many sets within reach that were put to the forces
+/// (the project's definition).
+inline constexpr int kLeastWithinReach = 100000;
+
+/// A start whose mu* is no farther than this from the scene's friction is judged thinly.
+inline constexpr double kThinMargin = 0.05;
 
 struct StartCertificate {
   StartVerdict verdict = StartVerdict::kSearched;
 
   double mu = 0.0;  ///< the scene's fingertip friction, at which the proof was looked for
-  /// FindLeastFriction: the smallest coefficient of a ladder at which the weight could be balanced
-  /// if a hand could be everywhere at once; infinity if at none.
+  /// mu*: the friction at which the proof fails (FindProofLimit); infinity if it holds at the
+  /// largest that is tried.
   double mu_star = 0.0;
-  BalanceProof proof;        ///< valid if certified
-  double proof_slack = 0.0;  ///< CalcProofSlack of it: checked again, by other means
-  int surface_points = 0;    ///< points of the object's surface that were looked at
-  int reachable_points = 0;  ///< of those, where a fingertip can be
-  double spacing = 0.0;      ///< no point of a flat face is farther than this from one of them [m]
+  bool thin() const { return std::abs(mu_star - mu) <= kThinMargin; }
+  BalanceProof proof;             ///< valid if certified
+  double proof_slack = 0.0;       ///< CalcProofSlack of it: checked again, by other means
+  int surface_points = 0;         ///< points of the object's surface that were looked at
+  int reachable_points = 0;       ///< of those, where a fingertip can be
+  int edge_points = 0;            ///< points of edges and corners that were looked at
+  int reachable_edge_points = 0;  ///< of those, where a fingertip can be at some normal of the fan
+  double spacing = 0.0;  ///< no point of a flat face is farther than this from one of them [m]
 
   GraspSearchStats search;             ///< zero if certified
   std::optional<GraspResult> example;  ///< a grasp, if graspable
 };
 
 /// Whether the object is ungraspable at the scene's start: the design's two ways.
-/// First a proof, at all surface points that a fingertip sphere can reach (the smallest sphere, let
-/// into surroundings and object as far as kinematic feasibility would), with circular cones and no
-/// limit on forces. Without a proof, the generated sets, if any, and then a search of contact sets
-/// are put to the full test.
+/// First a proof, at all that a fingertip sphere can touch, with circular cones and no limit on
+/// forces: points of the faces (the smallest sphere, let into surroundings and object as far as
+/// kinematic feasibility would), of the edges and of the corners (the whole fan of normals that
+/// leaves the sphere free of the surroundings). Without a proof, the generated sets, if any, and
+/// then a search of contact sets, edges among them, are put to the full test.
 /// @param generated  sets that a grasp generator proposes for this start; ring and little may be
 ///                   dropped.
 StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateConfig& config,
@@ -59,9 +69,10 @@ StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateCon
                               ThreadPool& pool,
                               const std::function<void(const GraspSearchStats&)>& progress = {});
 
-/// The contacts that the proof is about.
-std::vector<WrenchContact> FindReachableContacts(const GraspWorld& world,
-                                                 const IkConfig& kinematics,
-                                                 const std::vector<RigidTransform>& X_WB);
+/// The contacts that the proof is about: those on faces, then those on edges and corners.
+std::vector<GraspContact> FindReachableContacts(const GraspWorld& world, const IkConfig& kinematics,
+                                                const std::vector<EdgePoint>& edges,
+                                                const std::vector<RigidTransform>& X_WB,
+                                                ThreadPool& pool);
 
 }  // namespace pregrasp

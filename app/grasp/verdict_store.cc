@@ -15,8 +15,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Raised whenever the test may answer differently for the same inputs.
-constexpr int kVersion = 2;
+// Of the running program: whatever may change a verdict, shipped hand and libraries linked in
+// aside, is in it.
+const std::string& ProgramHash() {
+  static const std::string hash = Sha256OfFile("/proc/self/exe");
+  return hash;
+}
 
 // Numbers and words, each followed by a blank: the text that the key is the hash of.
 class KeyText {
@@ -85,12 +89,13 @@ void AddConfig(const SurfacePointsConfig& surface, const StartCertificateConfig&
   const SamplerConfig& sampler = search.sampler;
   const IkConfig& ik = search.grasp.kinematics.ik;
   out << surface.spacing << surface.max_points << search.grasp.f_min << search.max_sets
-      << search.max_solves << search.max_found << search.grasp.kinematics.reach_starts
-      << sampler.near_spacing << sampler.near_offset << sampler.near_share << sampler.opposed_share
-      << sampler.slack.object << sampler.slack.environment << std::to_string(config.seed).c_str()
-      << ik.tip_tolerance << ik.tip_target << ik.max_cone_deg << ik.min_clearance
-      << ik.contact_depth << ik.certify << ik.max_starts << ik.start_candidates << ik.max_iterations
-      << ik.slsqp << ik.slsqp_evaluations << ik.clearance_buffer << ik.influence << ik.warm_starts;
+      << search.max_plausible << search.max_solves << search.max_found
+      << search.grasp.kinematics.reach_starts << sampler.near_spacing << sampler.near_offset
+      << sampler.near_share << sampler.opposed_share << sampler.slack.object
+      << sampler.slack.environment << std::to_string(config.seed).c_str() << ik.tip_tolerance
+      << ik.tip_target << ik.max_cone_deg << ik.min_clearance << ik.contact_depth << ik.certify
+      << ik.max_starts << ik.start_candidates << ik.max_iterations << ik.slsqp
+      << ik.slsqp_evaluations << ik.clearance_buffer << ik.influence << ik.warm_starts;
 }
 
 Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -113,6 +118,7 @@ Json ToJson(const GraspResult& grasp) {
     contacts.push_back({{"finger", static_cast<int>(contact.finger)},
                         {"p_OC", ToJson(contact.p_OC)},
                         {"nhat_O", ToJson(contact.nhat_O)},
+                        {"on_edge", contact.on_edge},
                         {"f_O", ToJson(Vector3(grasp.wrench->forces.row(static_cast<int>(i))))}});
   }
   const IkResult& ik = grasp.kinematics->ik;
@@ -141,7 +147,7 @@ GraspResult ToGrasp(const Json& json) {
     const int finger = contact.at("finger").get<int>();
     if (finger < 0 || finger >= kNumFingers) throw std::out_of_range("finger");
     grasp.contacts.push_back({static_cast<Finger>(finger), ToVector3(contact.at("p_OC")),
-                              ToVector3(contact.at("nhat_O"))});
+                              ToVector3(contact.at("nhat_O")), contact.at("on_edge").get<bool>()});
     const Vector3 f = ToVector3(contact.at("f_O"));
     wrench.min_normal = std::min(wrench.min_normal, -f.dot(grasp.contacts.back().nhat_O));
     wrench.forces.row(row++) = f;
@@ -173,10 +179,12 @@ Json ToJson(const StartCertificate& certificate) {
       {"proof_slack", certificate.proof_slack},
       {"surface_points", certificate.surface_points},
       {"reachable_points", certificate.reachable_points},
+      {"edge_points", certificate.edge_points},
+      {"reachable_edge_points", certificate.reachable_edge_points},
       {"spacing", certificate.spacing},
       {"search",
-       {search.drawn, search.plausible, search.held, search.solved, search.reached, search.feasible,
-        search.tried}}};
+       {search.drawn, search.plausible, search.on_edges, search.held, search.solved, search.reached,
+        search.feasible, search.tried}}};
   if (certificate.example) json["example"] = ToJson(*certificate.example);
   return json;
 }
@@ -200,12 +208,14 @@ StartCertificate ToCertificate(const Json& json) {
   certificate.proof_slack = json.at("proof_slack").get<double>();
   certificate.surface_points = json.at("surface_points").get<int>();
   certificate.reachable_points = json.at("reachable_points").get<int>();
+  certificate.edge_points = json.at("edge_points").get<int>();
+  certificate.reachable_edge_points = json.at("reachable_edge_points").get<int>();
   certificate.spacing = json.at("spacing").get<double>();
   const Json& search = json.at("search");
   GraspSearchStats& stats = certificate.search;
   int i = 0;
-  for (int* count : {&stats.drawn, &stats.plausible, &stats.held, &stats.solved, &stats.reached,
-                     &stats.feasible, &stats.tried}) {
+  for (int* count : {&stats.drawn, &stats.plausible, &stats.on_edges, &stats.held, &stats.solved,
+                     &stats.reached, &stats.feasible, &stats.tried}) {
     *count = search.at(i++).get<int>();
   }
   if (json.contains("example")) certificate.example = ToGrasp(json.at("example"));
@@ -219,7 +229,7 @@ std::string StartVerdictKey(const Scene& scene, const HandModel& hand,
                             const StartCertificateConfig& config,
                             const std::vector<std::vector<GraspContact>>& generated) {
   KeyText out;
-  out << "start" << kVersion;
+  out << "start" << ProgramHash().c_str();
   AddScene(scene, out);
   AddHand(hand, out);
   AddConfig(surface, config, out);
@@ -251,8 +261,7 @@ std::optional<StartCertificate> LoadStartVerdict(const std::filesystem::path& fo
   try {
     const Json file = Json::parse(text.str());
     const Json& body = file.at("start");
-    const bool whole = file.at("version") == kVersion && file.at("key") == key &&
-                       file.at("sha256") == Sha256(body.dump());
+    const bool whole = file.at("key") == key && file.at("sha256") == Sha256(body.dump());
     if (!whole) return std::nullopt;
     return ToCertificate(body);
   } catch (const std::exception&) {  // whatever is wrong with it, it is not a verdict
@@ -263,8 +272,7 @@ std::optional<StartCertificate> LoadStartVerdict(const std::filesystem::path& fo
 bool StoreStartVerdict(const std::filesystem::path& folder, const std::string& key,
                        const StartCertificate& certificate) {
   const Json body = ToJson(certificate);
-  const Json file = {
-      {"version", kVersion}, {"key", key}, {"sha256", Sha256(body.dump())}, {"start", body}};
+  const Json file = {{"key", key}, {"sha256", Sha256(body.dump())}, {"start", body}};
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   const std::filesystem::path target = folder / (key + ".json");

@@ -9,9 +9,9 @@
 namespace pregrasp {
 
 /// What a start verdict depends on, as 64 hex digits: shapes, poses, the object's mass and centre
-/// of mass, gravity, fingertips, the hand, generated sets, the configuration, and the version of
-/// the test. Names, cameras, friction between bodies and anything else may change without a new
-/// verdict.
+/// of mass, gravity, fingertips, the hand, generated sets, the configuration, and the program
+/// itself (the SHA-256 of its file). Names, cameras, friction between bodies and anything else may
+/// change without a new verdict.
 std::string StartVerdictKey(const Scene& scene, const HandModel& hand,
                             const SurfacePointsConfig& surface,
                             const StartCertificateConfig& config,
@@ -22,7 +22,7 @@ std::string StartVerdictKey(const Scene& scene, const HandModel& hand,
 std::filesystem::path DefaultVerdictFolder();
 
 /// The verdict stored under `key`; none if there is none, or if the file is damaged, of another
-/// version or of another key.
+/// key.
 std::optional<StartCertificate> LoadStartVerdict(const std::filesystem::path& folder,
                                                  const std::string& key);
 

@@ -46,8 +46,12 @@ void FindVerdict(Application& a) {
   facts.drawn = start.search.drawn;
   facts.tried = start.search.tried;
   facts.held = start.search.held;
+  facts.thin = start.thin();
   facts.reached = start.search.reached;
+  facts.reachable_edge_points = start.reachable_edge_points;
   facts.feasible = start.verdict == StartVerdict::kGraspable ? 1 : 0;
+  facts.plausible = start.search.plausible;
+  facts.on_edges = start.search.on_edges;
   if (start.example) {
     for (const GraspContact& contact : start.example->contacts) {
       facts.example.push_back({contact.finger, contact.p_OC, contact.nhat_O});

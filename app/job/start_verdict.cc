@@ -15,30 +15,61 @@ StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed, Thread
   return FindStartVerdict(world, config, {}, {DefaultVerdictFolder()}, pool);
 }
 
-std::string DescribeStart(const StartCertificate& certificate) {
-  switch (certificate.verdict) {
+namespace {
+
+// How far the proof goes, whatever the scene's friction is.
+std::string DescribeProof(const StartCertificate& start) {
+  if (std::isinf(start.mu_star)) {
+    return fmt::format("the proof holds even at {:g}, the largest friction tried",
+                       kMostProofFriction);
+  }
+  return fmt::format("the proof holds up to friction {:.3f} (mu*){}", start.mu_star,
+                     start.thin() ? ", a thin margin" : "");
+}
+
+std::string DescribeSearch(const StartCertificate& start) {
+  const GraspSearchStats& search = start.search;
+  const bool enough = search.plausible >= kLeastWithinReach;
+  return fmt::format(
+      "{}{} contact sets with tips as near and far as a hand brings them were put to the forces, "
+      "{} "
+      "of them with an edge or corner: {} hold, the hand reaches {} of those, and none is feasible",
+      enough ? "" : fmt::format("in {} draws only ", search.drawn), search.plausible,
+      search.on_edges, search.held, search.reached);
+}
+
+std::string DescribeExample(const StartCertificate& start) {
+  std::string fingers;
+  bool on_edge = false;
+  for (const GraspContact& contact : start.example->contacts) {
+    fingers += (fingers.empty() ? "" : ", ") + std::string(FingerName(contact.finger));
+    on_edge = on_edge || contact.on_edge;
+  }
+  return fmt::format("{} close on it{}, found after {} contact sets", fingers,
+                     on_edge ? " by edges or corners" : "", start.search.tried);
+}
+
+}  // namespace
+
+std::string DescribeStart(const StartCertificate& start) {
+  switch (start.verdict) {
     case StartVerdict::kCertified:
       return fmt::format(
-          "ungraspable at the start, certified for contacts on faces: no forces at the {} points "
-          "that a fingertip can reach balance the weight at friction {:g}{}",
-          certificate.reachable_points, certificate.mu,
-          std::isinf(certificate.mu_star)
-              ? ""
-              : fmt::format("; that would take {:g}", certificate.mu_star));
+          "ungraspable at the start, certified: no forces at the {} points of faces and {} of "
+          "edges "
+          "and corners that a fingertip can reach balance the weight at friction {:g}; {}",
+          start.reachable_points, start.reachable_edge_points, start.mu, DescribeProof(start));
     case StartVerdict::kSearched:
       return fmt::format(
-          "ungraspable at the start as far as a search can tell: 0 of {} contact sets are feasible "
-          "({} hold, {} of them within reach)",
-          certificate.search.tried, certificate.search.held, certificate.search.reached);
+          "ungraspable at the start as far as a search can tell; there is no proof at friction "
+          "{:g} "
+          "({}); {}",
+          start.mu, DescribeProof(start), DescribeSearch(start));
     case StartVerdict::kGraspable:
-      break;
+      return fmt::format("graspable at the start ({}): {}", DescribeProof(start),
+                         DescribeExample(start));
   }
-  std::string fingers;
-  for (const GraspContact& contact : certificate.example->contacts) {
-    fingers += (fingers.empty() ? "" : ", ") + std::string(FingerName(contact.finger));
-  }
-  return fmt::format("graspable at the start: {} close on it, found after {} contact sets", fingers,
-                     certificate.search.drawn);
+  return "";
 }
 
 }  // namespace pregrasp

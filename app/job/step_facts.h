@@ -144,9 +144,10 @@ struct SettleFacts {
 struct VerdictFacts {
   std::string verdict;
   double mu = 0.0;
-  std::optional<double> mu_star;  ///< none: not at any friction that was tried
-  int reachable_points = 0;
-  int drawn = 0, tried = 0, held = 0, reached = 0, feasible = 0;
+  std::optional<double> mu_star;  ///< none: the proof holds at the largest friction tried
+  bool thin = false;
+  int reachable_points = 0, reachable_edge_points = 0;
+  int drawn = 0, plausible = 0, on_edges = 0, tried = 0, held = 0, reached = 0, feasible = 0;
   std::vector<PlaceFacts> example;  ///< a grasp, if graspable
   std::string sentence;
 
@@ -159,8 +160,12 @@ struct VerdictFacts {
     visit("drawn", self.drawn);
     visit("tried", self.tried);
     visit("held", self.held);
+    visit("thin", self.thin);
     visit("reached", self.reached);
+    visit("reachable_edge_points", self.reachable_edge_points);
     visit("feasible", self.feasible);
+    visit("plausible", self.plausible);
+    visit("on_edges", self.on_edges);
     visit("example", self.example);
     visit("sentence", self.sentence);
   }

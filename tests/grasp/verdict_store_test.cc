@@ -32,11 +32,11 @@ StartCertificate MakeGraspable() {
   certificate.surface_points = 1000;
   certificate.reachable_points = 700;
   certificate.spacing = 0.002;
-  certificate.search = {4096, 3000, 100, 90, 20, 1, 2990};
+  certificate.search = {4096, 3000, 1200, 100, 90, 20, 1, 2990};
   GraspResult grasp;
   grasp.status = GraspStatus::kFeasible;
   grasp.contacts = {{Finger::kThumb, {0.1, 1.0 / 3.0, -2e-9}, {0, 0, 1}},
-                    {Finger::kMiddle, {-0.1, 0, 0}, {0, 0, -1}}};
+                    {Finger::kMiddle, {-0.1, 0, 0}, {0, 0, -1}, true}};
   grasp.wrench = WrenchResult();
   grasp.wrench->status = WrenchStatus::kFeasible;
   grasp.wrench->margin = 0.0123;
@@ -82,6 +82,7 @@ TEST_F(VerdictStoreTest, WhatIsStoredIsLoadedToTheLastBit) {
   ASSERT_TRUE(grasp->example.has_value());
   EXPECT_EQ(grasp->example->contacts[0].p_OC, graspable.example->contacts[0].p_OC);
   EXPECT_EQ(grasp->example->contacts[1].finger, Finger::kMiddle);
+  EXPECT_TRUE(grasp->example->contacts[1].on_edge);
   EXPECT_EQ(grasp->example->wrench->forces, graspable.example->wrench->forces);
   EXPECT_EQ(grasp->example->kinematics->ik.q, graspable.example->kinematics->ik.q);
   EXPECT_EQ(grasp->example->kinematics->ik.X_WH.matrix(),
