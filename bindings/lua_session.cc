@@ -16,8 +16,10 @@ namespace pregrasp {
 namespace {
 
 const Schema kSettleOptions{"SettleOptions", {"seconds"}};
-const Schema kSettleResult{"SettleResult", {"moved_mm", "rotated_deg", "at_rest", "body"}};
-const Schema kVerdict{"Verdict", {"verdict", "mu", "mu_star", "sentence", "step_id"}};
+const Schema kSettleResult{
+    "SettleResult",
+    {"moved_mm", "rotated_deg", "at_rest", "body", "not_converged", "unresolved_mm"}};
+const Schema kVerdict{"Verdict", {"verdict", "mu", "mu_star", "thin", "sentence", "step_id"}};
 const Schema kSimulateOptions{"SimulateOptions", {"trace"}};
 const Schema kRecordOptions{"RecordOptions", {"dir", "pictures"}};
 const Schema kShotOptions{"ShotOptions",
@@ -164,7 +166,9 @@ Pushed SessionSettle(lua_State* L, Session& session, const SettleOptions& option
       .Set("moved_mm", result.moved_mm)
       .Set("rotated_deg", result.rotated_deg)
       .Set("at_rest", result.at_rest)
-      .Set("body", result.body);
+      .Set("body", result.body)
+      .Set("not_converged", result.not_converged)
+      .Set("unresolved_mm", result.unresolved_mm);
   return {1};
 }
 
@@ -182,6 +186,7 @@ Pushed SessionVerdict(lua_State* L, Session& session) {
 }
 
 Pushed SessionSimulate(lua_State* L, const std::shared_ptr<Session>& session,
+      .Set("thin", verdict.thin)
                        const SimulateOptions& options) {
   PushObject(
       L, std::make_shared<LuaSimulation>(LuaSimulation{session, &session->start(), options.trace}));

@@ -153,6 +153,8 @@ double TrajectoryHoldTurn(LuaTrajectory& t) { return t.facts().hold_turn_deg; }
 double TrajectoryStepShift(LuaTrajectory& t) { return t.facts().step_shift_mm; }
 double TrajectoryStepTurn(LuaTrajectory& t) { return t.facts().step_turn_deg; }
 double TrajectoryPenetration(LuaTrajectory& t) { return t.facts().max_penetration_mm; }
+int TrajectoryNotConverged(LuaTrajectory& t) { return t.facts().not_converged; }
+double TrajectoryUnresolved(LuaTrajectory& t) { return t.facts().unresolved_mm; }
 double TrajectoryTipOverlap(LuaTrajectory& t) { return t.facts().max_tip_overlap_mm; }
 double TrajectoryMaxSpeed(LuaTrajectory& t) { return t.facts().max_speed; }
 double TrajectoryMaxForce(LuaTrajectory& t) { return t.facts().max_force_N; }
@@ -267,6 +269,8 @@ const ClassInfo& TrajectoryClass() {
                                   Property<&TrajectoryStepShift>("step_shift_mm"),
                                   Property<&TrajectoryStepTurn>("step_turn_deg"),
                                   Property<&TrajectoryPenetration>("max_penetration_mm"),
+                                  Property<&TrajectoryNotConverged>("not_converged"),
+                                  Property<&TrajectoryUnresolved>("unresolved_mm"),
                                   Property<&TrajectoryTipOverlap>("max_tip_overlap_mm"),
                                   Property<&TrajectoryMaxSpeed>("max_speed"),
                                   Property<&TrajectoryMaxForce>("max_force_N"),

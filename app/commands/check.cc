@@ -24,6 +24,11 @@ struct CheckOptions {
   bool no_grasps = false;
 };
 
+const char* SeverityName(CheckFinding::Severity severity) {
+  constexpr const char* kNames[] = {"note", "warning", "error"};
+  return kNames[static_cast<int>(severity)];
+}
+
 // One line a finding; the first error is the one line on stderr.
 int Check(const CheckOptions& options) {
   std::vector<Setting> settings;
@@ -33,9 +38,10 @@ int Check(const CheckOptions& options) {
   int errors = 0, warnings = 0;
   for (const CheckFinding& finding : CheckScene(scene)) {
     const bool error = finding.severity == CheckFinding::Severity::kError;
-    ++(error ? errors : warnings);
+    errors += error;
+    warnings += finding.severity == CheckFinding::Severity::kWarning;
     fmt::print(errors == 1 && error ? stderr : stdout, "{}: {}: {}\n", finding.where,
-               error ? "error" : "warning", OneLine(finding.message));
+               SeverityName(finding.severity), OneLine(finding.message));
   }
   if (errors > 0) return 2;
   if (!options.no_grasps) {

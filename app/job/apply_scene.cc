@@ -26,9 +26,13 @@ void SettleStart(Application& a) {
   a.next.start.t = 0.0;
   a.next.start.step = 0;
   a.facts.id = "scene.settle";
-  a.facts.details =
-      SettleFacts{seconds, 1e3 * result.largest.moved, RadToDeg(result.largest.rotated),
-                  result.at_rest, result.largest.body};
+  a.facts.details = SettleFacts{seconds,
+                                1e3 * result.largest.moved,
+                                RadToDeg(result.largest.rotated),
+                                result.at_rest,
+                                result.largest.body,
+                                result.not_converged,
+                                1e3 * result.unresolved};
   SetWorldFacts(a.facts, a.job.world(), a.next.start, {});
 }
 
@@ -42,16 +46,16 @@ void FindVerdict(Application& a) {
   facts.verdict = StartVerdictName(start.verdict);
   facts.mu = start.mu;
   if (std::isfinite(start.mu_star)) facts.mu_star = start.mu_star;
-  facts.reachable_points = start.reachable_points;
-  facts.drawn = start.search.drawn;
-  facts.tried = start.search.tried;
-  facts.held = start.search.held;
   facts.thin = start.thin();
-  facts.reached = start.search.reached;
+  facts.reachable_points = start.reachable_points;
   facts.reachable_edge_points = start.reachable_edge_points;
-  facts.feasible = start.verdict == StartVerdict::kGraspable ? 1 : 0;
+  facts.drawn = start.search.drawn;
   facts.plausible = start.search.plausible;
   facts.on_edges = start.search.on_edges;
+  facts.tried = start.search.tried;
+  facts.held = start.search.held;
+  facts.reached = start.search.reached;
+  facts.feasible = start.verdict == StartVerdict::kGraspable ? 1 : 0;
   if (start.example) {
     for (const GraspContact& contact : start.example->contacts) {
       facts.example.push_back({contact.finger, contact.p_OC, contact.nhat_O});

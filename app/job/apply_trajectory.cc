@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/core/error.h"
 #include "app/job/apply_stages.h"
 
@@ -116,8 +118,8 @@ CertifyFacts MakeCertifyFacts(const JobState& state, const Scene& scene) {
   facts.max_force_N = certificate.full.max_force;
   facts.max_penetration_mm = 1e3 * certificate.full.max_penetration;
   facts.max_tip_overlap_mm = 1e3 * certificate.full.max_tip_overlap;
-  facts.unconverged_seconds = certificate.full.unconverged_seconds;
-  facts.unresolved_mm = 1e3 * certificate.full.unresolved;
+  facts.not_converged = certificate.full.not_converged;
+  facts.unresolved_mm = 1e3 * std::max(certificate.full.unresolved, certificate.half.unresolved);
   facts.neighbours = MakeNeighbourFacts(certificate.neighbours, scene);
   for (const GraspContact& contact : release.pressing) {
     facts.pressing.push_back({contact.finger, contact.p_OC, contact.nhat_O});

@@ -10,6 +10,7 @@ namespace pregrasp {
 /// Something about a scene that its author should know.
 struct CheckFinding {
   enum class Severity {
+    kNote,     ///< worth knowing, and no reason to change anything
     kWarning,  ///< it runs, but perhaps not as meant
     kError,    ///< nothing can be planned from it
   };
@@ -19,8 +20,8 @@ struct CheckFinding {
 };
 
 /// Looks for what validation cannot see: bodies that overlap (by 0.05 mm or more), that float or do
-/// not stay at rest for 1 s, sizes and densities that look like another unit, departures from the
-/// project's physical rules. Errors first.
+/// not stay at rest for 1 s, physics that does not converge there, sizes and densities that look
+/// like another unit, departures from the project's physical rules. Errors first.
 /// @param scene  loaded.
 std::vector<CheckFinding> CheckScene(const Scene& scene);
 

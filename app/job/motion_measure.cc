@@ -29,7 +29,10 @@ SettleResult Settle(const World& world, WorldState& state, double seconds) {
   const auto steps = std::lround(seconds / world.config().dt);
   for (long step = 0; step < steps; ++step) {
     ThrowIfInterrupted();
-    world.Step(state);
+    const Convergence convergence = world.Step(state);
+    ++result.steps;
+    result.not_converged += !convergence.converged;
+    if (!convergence.converged) result.unresolved += world.config().dt * convergence.residual;
     for (int i = 0; i < world.num_movables(); ++i) {
       const Motion motion = CalcMotion(world, MovableIndex{i}, start, state);
       result.largest.rotated = std::max(result.largest.rotated, motion.rotated);

@@ -128,7 +128,9 @@ struct OpenFacts {
 struct SettleFacts {
   double seconds = 0.0, moved_mm = 0.0, rotated_deg = 0.0;
   bool at_rest = false;
-  std::string body;  ///< that moved furthest
+  std::string body;            ///< that moved furthest
+  int not_converged = 0;       ///< physics steps that the contact solver left unfinished
+  double unresolved_mm = 0.0;  ///< the overlap that these leave, summed
 
   template <typename Self, typename Visit>
   static void VisitFields(Self& self, Visit&& visit) {
@@ -137,6 +139,8 @@ struct SettleFacts {
     visit("rotated_deg", self.rotated_deg);
     visit("at_rest", self.at_rest);
     visit("body", self.body);
+    visit("not_converged", self.not_converged);
+    visit("unresolved_mm", self.unresolved_mm);
   }
 };
 
@@ -156,16 +160,16 @@ struct VerdictFacts {
     visit("verdict", self.verdict);
     visit("mu", self.mu);
     visit("mu_star", self.mu_star);
-    visit("reachable_points", self.reachable_points);
-    visit("drawn", self.drawn);
-    visit("tried", self.tried);
-    visit("held", self.held);
     visit("thin", self.thin);
-    visit("reached", self.reached);
+    visit("reachable_points", self.reachable_points);
     visit("reachable_edge_points", self.reachable_edge_points);
-    visit("feasible", self.feasible);
+    visit("drawn", self.drawn);
     visit("plausible", self.plausible);
     visit("on_edges", self.on_edges);
+    visit("tried", self.tried);
+    visit("held", self.held);
+    visit("reached", self.reached);
+    visit("feasible", self.feasible);
     visit("example", self.example);
     visit("sentence", self.sentence);
   }
@@ -413,8 +417,9 @@ struct CertifyFacts {
   bool stays_when_released = false;
   double seconds = 0.0;
   double max_speed = 0.0, max_force_N = 0.0, max_penetration_mm = 0.0, max_tip_overlap_mm = 0.0;
-  double unconverged_seconds = 0.0;   ///< in steps that the contact solver left unfinished
-  double unresolved_mm = 0.0;         ///< the overlap that these leave, summed
+  int not_converged = 0;              ///< physics steps that the contact solver left unfinished
+  double unresolved_mm = 0.0;         ///< the overlap that such steps leave, summed; at half the
+                                      ///< step where that leaves more
   std::optional<RobustFacts> robust;  ///< of certified plans
   NeighbourFacts neighbours;          ///< at the end of the hold
   std::vector<PlaceFacts> pressing;
@@ -438,7 +443,7 @@ struct CertifyFacts {
     visit("max_force_N", self.max_force_N);
     visit("max_penetration_mm", self.max_penetration_mm);
     visit("max_tip_overlap_mm", self.max_tip_overlap_mm);
-    visit("unconverged_seconds", self.unconverged_seconds);
+    visit("not_converged", self.not_converged);
     visit("unresolved_mm", self.unresolved_mm);
     visit("robust", self.robust);
     visit("neighbours", self.neighbours);

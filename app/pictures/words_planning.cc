@@ -37,10 +37,12 @@ std::string Words(std::string name) {
 }
 
 Lines Describe(const Scene& scene, const SettleFacts& facts) {
-  return {fmt::format("Left alone for {:.3g} s, the {} {}.", facts.seconds, scene.object().name,
-                      facts.at_rest ? "stays at rest" : "does not stay at rest"),
-          fmt::format("moved\t{:.4f} mm", facts.moved_mm),
-          fmt::format("turned\t{:.4f} deg", facts.rotated_deg)};
+  return {
+      fmt::format("Left alone for {:.3g} s, the {} {}.", facts.seconds, scene.object().name,
+                  facts.at_rest ? "stays at rest" : "does not stay at rest"),
+      fmt::format("moved\t{:.4f} mm", facts.moved_mm),
+      fmt::format("turned\t{:.4f} deg", facts.rotated_deg),
+      fmt::format("not converged\t{} steps, {:.3g} mm", facts.not_converged, facts.unresolved_mm)};
 }
 
 Lines Describe(const Scene& /*scene*/, const VerdictFacts& facts) { return {facts.sentence}; }
@@ -155,6 +157,10 @@ Lines Describe(const Scene& scene, const CertifyFacts& facts) {
   lines.push_back(fmt::format("moves if released\t{:.1f} mm, {:.1f} deg", facts.released_shift_mm,
                               facts.released_turn_deg));
   lines.push_back(fmt::format("largest force\t{:.2f} N", facts.max_force_N));
+  if (facts.not_converged > 0) {
+    lines.push_back(fmt::format("not converged\t{} steps, {:.3g} mm", facts.not_converged,
+                                facts.unresolved_mm));
+  }
   if (facts.robust) {
     lines.push_back(fmt::format("in changed worlds\t{} of {} end alike", facts.robust->held,
                                 facts.robust->worlds));

@@ -129,7 +129,7 @@ class PlanRunner {
   void AddConvergence(const Convergence& convergence) {
     if (convergence.converged) return;
     const double dt = world_.config().dt;
-    outcome_.unconverged_seconds += dt;
+    ++outcome_.not_converged;
     outcome_.max_residual = std::max(outcome_.max_residual, convergence.residual);
     outcome_.unresolved += dt * convergence.residual;
   }

@@ -27,7 +27,7 @@ struct PlanOutcome {
                                      ///< surroundings [m]
   double tip_overlap_seconds = 0.0;  ///< time with more than kTipOverlapAllowed
   double min_tip_gap = 1e9;          ///< between the two fingertip spheres while both are on [m]
-  double unconverged_seconds = 0.0;  ///< in steps that the contact solver left unfinished
+  int not_converged = 0;             ///< steps that the contact solver left unfinished
   double max_residual = 0.0;         ///< the fastest approach that such a step left [m/s]
   double unresolved = 0.0;           ///< the way of these approaches, summed over the steps [m]
   /// The object left the scene, or the state was no longer finite: what is kept is then the last

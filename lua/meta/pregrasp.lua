@@ -136,14 +136,15 @@ function pregrasp.union(parts) end
 ---@field departures string[] from the project's physical rules, a sentence each; empty is within them
 local Session = {}
 
----Whether the object can be grasped where it stands: by proof, else by search.
+---Whether the object can be grasped where it stands, by faces, edges or corners: by proof, else by search.
 ---@return Verdict
 function Session:verdict() end
 
 ---@class Verdict
 ---@field verdict string "certified", "searched" or "graspable"
 ---@field mu number the fingertips' friction
----@field mu_star? number the least friction at which the proof fails, of those tried; nil for none
+---@field mu_star? number mu*, the friction above which the proof fails; nil if it holds at 3, the largest tried
+---@field thin boolean mu* lies within 0.05 of mu
 ---@field sentence string
 ---@field step_id string
 
@@ -160,6 +161,8 @@ function Session:settle(options) end
 ---@field rotated_deg number
 ---@field at_rest boolean under 1 mm and 0.5 degrees
 ---@field body string that moved furthest
+---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
+---@field unresolved_mm number how far bodies may have sunk into each other in these
 
 ---A simulation from the start, to be stepped by hand.
 ---@param options? SimulateOptions
@@ -517,6 +520,8 @@ function Optimizer:shot(options) end
 ---@field step_shift_mm number between the final positions at the full and at half the time step
 ---@field step_turn_deg number
 ---@field max_penetration_mm number between bodies
+---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
+---@field unresolved_mm number how far bodies may have sunk into each other in such steps, at the full or at half the time step
 ---@field max_tip_overlap_mm number of a fingertip with the surroundings
 ---@field max_speed number of the object [m/s]
 ---@field max_force_N number of a finger

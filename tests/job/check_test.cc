@@ -45,6 +45,25 @@ TEST(CheckSceneTest, ABodyThatTipsIsNotAtRestAndDoesNotFloat) {
   EXPECT_EQ(finding.find("floats"), std::string::npos) << finding;
 }
 
+TEST(CheckSceneTest, PhysicsThatDoesNotConvergeIsTold) {
+  // A crate of 40 kg on a strip of 1 g and 8 mm of width.
+  Scene scene = MakeRulerScene();
+  scene.object().shape = Box{{0.3, 0.3, 0.2}};
+  scene.object().X_WB.translation() = Vector3(-0.3, 0, 0.104);
+  scene.object().mass_properties = MassProperties{40.0, Vector3::Zero(), Matrix3::Zero()};
+  Body strip;
+  strip.name = "strip";
+  strip.where = "ruler.lua:4";
+  strip.shape = Box{{0.3, 0.008, 0.004}};
+  strip.X_WB.translation() = Vector3(-0.3, 0, 0.002);
+  strip.mass_properties = MassProperties{0.001, Vector3::Zero(), Matrix3::Zero()};
+  scene.bodies.push_back(strip);
+  const std::string findings = OneFinding(scene);
+  EXPECT_NE(findings.find("240 physics steps were not found to the solver's tolerance"),
+            std::string::npos)
+      << findings;
+}
+
 TEST(CheckSceneTest, MillimetresForMetresAndGramsForKilogramsAreSuspected) {
   Scene grams = MakeRulerScene();
   grams.object().mass_properties = MassProperties{25.0, Vector3::Zero(), Matrix3::Zero()};
