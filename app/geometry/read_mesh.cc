@@ -5,6 +5,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <assimp/DefaultIOSystem.h>
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <fstream>
@@ -13,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/geometry/read_in_child.h"
 #include "app/geometry/read_ply.h"
 
 namespace pregrasp {
@@ -49,6 +51,41 @@ void RequireReadable(const fs::path& file) {
   }
 }
 
+// What a mesh file may name: other plain files in its own folder and below. A pipe would hang, and
+// what lies elsewhere is not the scene's to read.
+class FencedFiles : public Assimp::DefaultIOSystem {
+ public:
+  explicit FencedFiles(const fs::path& file) {
+    std::error_code error;
+    folder_ = fs::canonical(fs::absolute(file, error).parent_path(), error);
+  }
+
+  bool Exists(const char* name) const override {
+    return IsAllowed(name) && DefaultIOSystem::Exists(name);
+  }
+  Assimp::IOStream* Open(const char* name, const char* mode = "rb") override {
+    if (IsAllowed(name)) return DefaultIOSystem::Open(name, mode);
+    refused_ = name;
+    return nullptr;
+  }
+  /// The last file that was asked for and is not allowed; empty for none.
+  const std::string& refused() const { return refused_; }
+
+ private:
+  bool IsAllowed(const char* name) const {
+    std::error_code error;
+    const fs::path real = fs::canonical(name, error);
+    if (error || !fs::is_regular_file(real, error)) return false;
+    if (fs::file_size(real, error) > kMaxBytes || error) return false;
+    const auto [rest, end] =
+        std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end());
+    return !folder_.empty() && rest == folder_.end();
+  }
+
+  fs::path folder_;
+  std::string refused_;
+};
+
 // The importer owns the scene that it returns. Materials, textures and normals are left out: their
 // loss lets equal positions be one vertex.
 const aiScene* Import(Assimp::Importer& importer, const fs::path& file) {
@@ -59,6 +96,8 @@ const aiScene* Import(Assimp::Importer& importer, const fs::path& file) {
       aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
           aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
           aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
+  auto* files = new FencedFiles(file);  // the importer's from the next line on
+  importer.SetIOHandler(files);
   std::string problem;
   try {
     const aiScene* scene = importer.ReadFile(
@@ -69,6 +108,10 @@ const aiScene* Import(Assimp::Importer& importer, const fs::path& file) {
     problem = importer.GetErrorString();
   } catch (const std::exception& error) {
     problem = error.what();
+  }
+  if (!files->refused().empty()) {
+    throw UnreadableFile("a mesh whose other files are plain files in its own folder",
+                         "which names \"" + files->refused() + '"');
   }
   throw UnreadableFile("a mesh that assimp can read",
                        problem.empty() ? "which it cannot" : "of which it says: " + problem);
@@ -98,11 +141,7 @@ TriangleMesh ReadPlyTriangles(const fs::path& file) {
   return {std::move(content.V), std::move(content.F)};
 }
 
-}  // namespace
-
-TriangleMesh ReadTriangles(const fs::path& file) {
-  RequireReadable(file);
-  if (Extension(file) == ".ply") return ReadPlyTriangles(file);
+TriangleMesh ImportTriangles(const fs::path& file) {
   Assimp::Importer importer;
   const aiScene* scene = Import(importer, file);
   std::size_t vertices = 0, triangles = 0;
@@ -137,6 +176,14 @@ TriangleMesh ReadTriangles(const fs::path& file) {
   result.F.conservativeResize(f, 3);
   RequireTriangles(static_cast<std::size_t>(f));
   return result;
+}
+
+}  // namespace
+
+TriangleMesh ReadTriangles(const fs::path& file) {
+  RequireReadable(file);
+  if (Extension(file) == ".ply") return ReadPlyTriangles(file);
+  return ReadInChild([&] { return ImportTriangles(file); });
 }
 
 PointFile ReadPoints(const fs::path& file) {

@@ -17,8 +17,9 @@ struct UnreadableFile : std::runtime_error {
   std::string got;  ///< follows the file's name: "which does not exist"
 };
 
-/// All triangles of a file as they are: PLY through our own reader, else through assimp, with the
-/// poses of the file's node tree applied. At most 256 MB and 2 million triangles.
+/// All triangles of a file as they are: PLY through our own reader, else through assimp in a
+/// process of its own (ReadInChild), with the poses of the file's node tree applied. At most 256 MB
+/// and 2 million triangles.
 /// @throws UnreadableFile
 TriangleMesh ReadTriangles(const std::filesystem::path& file);
 

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -190,7 +191,9 @@ std::vector<double> ReadProperty(Body& body, const Property& property, const Ele
   std::size_t count = 1;
   if (property.list_count) {
     const double length = body.Next(*property.list_count, element);
-    if (!(length >= 0.0 && length <= static_cast<double>(body.size()))) {
+    constexpr double kLongestList = 1e6;  // a face has three corners, or a few more
+    const double most = std::min(kLongestList, static_cast<double>(body.size()));
+    if (!(length >= 0.0 && length <= most)) {
       Fail(fmt::format("has a list of {} in element \"{}\"", length, element.name));
     }
     count = static_cast<std::size_t>(length);
@@ -228,14 +231,14 @@ void ReadVertices(Body& body, const Element& element, PlyContent& content) {
 
 void ReadFaces(Body& body, const Element& element, PlyContent& content) {
   std::vector<std::array<int, 3>> triangles;
-  const auto vertices = static_cast<double>(content.V.rows());
+  constexpr double kMostVertices = std::numeric_limits<int>::max();
   for (std::size_t f = 0; f < element.count; ++f) {
     for (const Property& property : element.properties) {
       const std::vector<double> corners = ReadProperty(body, property, element);
       if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
       for (const double corner : corners) {
-        if (!(corner >= 0.0 && corner < vertices)) {
-          Fail(fmt::format("has a face with vertex {} of {}", corner, vertices));
+        if (!(corner >= 0.0 && corner < kMostVertices)) {
+          Fail(fmt::format("has a face with vertex {}", corner));
         }
       }
       for (std::size_t i = 2; i < corners.size(); ++i) {
@@ -254,6 +257,11 @@ void ReadFaces(Body& body, const Element& element, PlyContent& content) {
 
 PlyContent ParsePly(std::string_view bytes) {
   const Header header = ParseHeader(bytes);
+  for (const char* name : {"vertex", "face"}) {
+    const auto count = std::count_if(header.elements.begin(), header.elements.end(),
+                                     [&](const Element& element) { return element.name == name; });
+    if (count > 1) Fail(fmt::format("has {} elements \"{}\"", count, name));
+  }
   Body body(bytes, header.encoding);
   PlyContent content;
   for (const Element& element : header.elements) {
@@ -268,6 +276,10 @@ PlyContent ParsePly(std::string_view bytes) {
         for (const Property& property : element.properties) ReadProperty(body, property, element);
       }
     }
+  }
+  // Faces may come before vertices.
+  if (content.F.rows() > 0 && content.F.maxCoeff() >= content.V.rows()) {
+    Fail(fmt::format("has a face with vertex {} of {}", content.F.maxCoeff(), content.V.rows()));
   }
   return content;
 }

@@ -1,17 +1,27 @@
 #include "app/geometry/load_shape.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/geometry/mass_properties.h"
 #include "app/geometry/point_cloud.h"
+#include "app/geometry/read_in_child.h"
+#include "app/geometry/read_mesh.h"
 #include "app/geometry/signed_distance.h"
 #include "tests/geometry/test_shapes.h"
 #include "tests/geometry/write_mesh.h"
@@ -59,6 +69,139 @@ class LoadShapeTest : public ::testing::Test {
 
   fs::path directory_;
 };
+
+// A tetrahedron whose corners are in the buffer `uri`.
+std::string TetrahedronAsGltf(const std::string& uri) {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+"min": [0, 0, 0], "max": [1, 1, 1]},
+{"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+"buffers": [{"uri": ")" +
+         uri + R"(", "byteLength": 72}]})";
+}
+
+std::string TetrahedronAsBytes() {
+  const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::uint16_t faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  return std::string(reinterpret_cast<const char*>(corners), sizeof corners) +
+         std::string(reinterpret_cast<const char*>(faces), sizeof faces);
+}
+
+TriangleMesh OneTriangle() {
+  TriangleMesh mesh;
+  mesh.V.setIdentity(3, 3);
+  mesh.F.resize(1, 3);
+  mesh.F << 0, 1, 2;
+  return mesh;
+}
+
+std::string ProblemOf(const std::function<TriangleMesh()>& read, const ReadLimits& limits = {}) {
+  try {
+    ReadInChild(read, limits);
+  } catch (const UnreadableFile& error) {
+    return error.expected + "; " + error.got;
+  }
+  return "";
+}
+
+TEST(ReadInChildTest, WhatIsReadComesBackAndWhatFailsIsAProblemOfTheFile) {
+  const TriangleMesh mesh = ReadInChild(OneTriangle);
+  EXPECT_EQ(mesh.V, OneTriangle().V);
+  EXPECT_EQ(mesh.F, OneTriangle().F);
+  EXPECT_EQ(ProblemOf([]() -> TriangleMesh { throw UnreadableFile("this", "that"); }),
+            "this; that");
+  EXPECT_EQ(ProblemOf([]() -> TriangleMesh { throw std::runtime_error("line 3"); }),
+            "a mesh that can be read; of which its reader says: line 3");
+  EXPECT_EQ(ProblemOf([]() -> TriangleMesh { std::abort(); }),
+            "a mesh that can be read; on which its reader fails");
+  EXPECT_EQ(ProblemOf([]() -> TriangleMesh { _exit(0); }),
+            "a mesh that can be read; on which its reader fails");
+}
+
+TEST(ReadInChildTest, AReaderThatLoopsOrWaitsOrSwellsIsEnded) {
+  ReadLimits limits;
+  limits.seconds = 1.0;
+  const std::string slow = "a file that can be read in limited time; which takes more than 1 s";
+  EXPECT_EQ(ProblemOf(
+                []() -> TriangleMesh {
+                  for (volatile bool on = true; on;) {
+                  }
+                },
+                limits),
+            slow);
+  limits.seconds = 0.1;
+  EXPECT_EQ(ProblemOf(
+                []() -> TriangleMesh {
+                  pause();
+                  return {};
+                },
+                limits),
+            "a file that can be read in limited time; which takes more than 0.1 s");
+#ifndef __SANITIZE_ADDRESS__
+  limits.seconds = 20.0;
+  limits.megabytes = 64;
+  EXPECT_EQ(ProblemOf(
+                []() -> TriangleMesh {
+                  std::vector<std::string> swelling;
+                  while (true) swelling.emplace_back(1 << 20, 'x');
+                },
+                limits),
+            "a file that can be read in limited memory; which takes more than 64 MB");
+#endif
+}
+
+TEST(ReadInChildTest, AnInterruptEndsTheReadingAndItsProcess) {
+  RequestInterrupt();
+  EXPECT_THROW(ReadInChild([]() -> TriangleMesh {
+                 pause();
+                 return {};
+               }),
+               Interrupted);
+  ClearInterrupt();
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);  // no child is left
+}
+
+TEST_F(LoadShapeTest, APlyFileWithTwoElementsOfVerticesIsRefusedAndFacesMayComeFirst) {
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  const std::string faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const std::string vertex_element =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string face_element = "element face 4\nproperty list uchar int vertex_indices\n";
+  Write("first.ply", "ply\nformat ascii 1.0\n" + face_element + vertex_element + "end_header\n" +
+                         faces + vertices);
+  EXPECT_NEAR(CalcVolume(Mesh{"", 1.0, Load("first.ply")}), 1.0 / 6.0, 1e-12);
+  Write("two.ply", "ply\nformat ascii 1.0\n" + vertex_element + face_element + vertex_element +
+                       "end_header\n" + vertices + faces + vertices);
+  EXPECT_NE(Refusal("two.ply").find("which has 2 elements \"vertex\""), std::string::npos);
+  Write("beyond.ply", "ply\nformat ascii 1.0\n" + face_element + vertex_element + "end_header\n" +
+                          "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 4\n" + vertices);
+  EXPECT_NE(Refusal("beyond.ply").find("a face with vertex 4 of 4"), std::string::npos);
+}
+
+TEST_F(LoadShapeTest, AMeshReadsItsOwnFolderAndNothingElse) {
+  fs::create_directories(directory_ / "a" / "deeper");
+  Write("a/deeper/own.bin", TetrahedronAsBytes());
+  Write("elsewhere.bin", TetrahedronAsBytes());
+  fs::create_symlink(directory_ / "elsewhere.bin", directory_ / "a" / "link.bin");
+  ASSERT_EQ(mkfifo((directory_ / "a" / "pipe.bin").c_str(), 0600), 0);
+  Write("a/own.gltf", TetrahedronAsGltf("deeper/own.bin"));
+  EXPECT_NEAR(CalcVolume(Mesh{"", 1.0, Load("a/own.gltf")}), 1.0 / 6.0, 1e-6);
+  for (const char* uri : {"../elsewhere.bin", "link.bin", "pipe.bin", "missing.bin"}) {
+    Write("a/other.gltf", TetrahedronAsGltf(uri));
+    const std::string refusal = Refusal("a/other.gltf");
+    EXPECT_NE(refusal.find("other files are plain files in its own folder"), std::string::npos)
+        << uri << ": " << refusal;
+    EXPECT_NE(refusal.find(uri), std::string::npos) << refusal;
+  }
+  // A material that is a pipe is left out, and nobody waits for it.
+  ASSERT_EQ(mkfifo((directory_ / "pipe.mtl").c_str(), 0600), 0);
+  Write(
+      "t.obj",
+      "mtllib pipe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  EXPECT_EQ(Load("t.obj").F.rows(), 4);
+}
 
 TEST_F(LoadShapeTest, ReadsAnObjAsItIs) {
   const TriangleMesh mesh = testing::MakeTorus(0.04, 0.01, 12, 8);
