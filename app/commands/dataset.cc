@@ -1,12 +1,10 @@
 #include <fmt/core.h>
 
-#include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "app/commands/dataset.h"
@@ -38,32 +36,22 @@ struct MergeOptions {
   fs::path out;
 };
 
-void ParseShard(const std::string& text, DatasetRun& run) {
-  const char* end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, run.shard);
-  const bool slash = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
-  const auto second = slash ? std::from_chars(first.ptr + 1, end, run.shards) : first;
-  if (!slash || second.ec != std::errc() || second.ptr != end) {
-    throw InputError("--shard", "", "i/n, such as 1/2", text);
-  }
-}
-
 // Shows how the items of a run come along.
-std::function<void(const DatasetProgress&)> Report(const char* stage, ProgressLine& line) {
-  return [stage, &line](const DatasetProgress& state) {
+std::function<void(const BatchProgress&)> Report(const char* stage, ProgressLine& line) {
+  return [stage, &line](const BatchProgress& state) {
     line.Show(stage, static_cast<int>(state.done), static_cast<int>(state.total));
   };
 }
 
 int MakeGrasps(MakeOptions& options) {
-  ParseShard(options.shard, options.run);
+  options.run.shard = ParseShard(options.shard);
   ProgressLine line;
   MakeGraspItems(options.run, options.items.Resolve(), Report("objects with grasps", line));
   return 0;
 }
 
 int MakeLabels(MakeOptions& options) {
-  ParseShard(options.shard, options.run);
+  options.run.shard = ParseShard(options.shard);
   ProgressLine line;
   MakeLabelItems(options.run, options.items.Resolve(), options.grasps, options.generator,
                  Report("objects with labels", line));

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
 
 #include "app/core/check.h"
@@ -17,42 +15,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDescriptionFile = "description.json";
 constexpr const char* kIndexFile = "index.json";
 
-std::string ReadText(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  if (!in) throw InputError(path.string(), "", "a readable file", "none");
-  return text.str();
-}
-
-void WriteText(const fs::path& path, const std::string& text) {
-  fs::path partial = path;
-  partial += ".partial";
-  {
-    std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-    out << text;
-    out.close();
-    if (!out) throw InputError(path.string(), "", "a file that can be written", "a write error");
+DatasetItem ReadItem(const ItemFolders& folders, std::int64_t index) {
+  const fs::path path = folders.Find(index);
+  std::vector<DatasetItem> items = ItemsFromTensors(ReadTensors(path));
+  if (items.size() != 1 || items[0].index != index) {
+    throw InputError(path.string(), "item.index", std::to_string(index), "another item");
   }
-  fs::rename(partial, path);
-}
-
-std::string ItemName(std::int64_t index) { return fmt::format("item-{:06}.safetensors", index); }
-
-DatasetItem ReadItem(const std::vector<fs::path>& folders, std::int64_t index) {
-  for (const fs::path& folder : folders) {
-    const fs::path path = folder / ItemName(index);
-    if (!fs::exists(path)) continue;
-    std::vector<DatasetItem> items = ItemsFromTensors(ReadTensors(path));
-    if (items.size() != 1 || items[0].index != index) {
-      throw InputError(path.string(), "item.index", std::to_string(index), "another item");
-    }
-    return std::move(items[0]);
-  }
-  throw InputError(folders[0].string(), "", "item " + std::to_string(index), "none");
+  return std::move(items[0]);
 }
 
 // What index.json says of one family, or of all.
@@ -72,35 +43,14 @@ struct Counts {
 
 }  // namespace
 
-DatasetFolder::DatasetFolder(fs::path folder, const std::string& description)
-    : folder_(std::move(folder)) {
-  fs::create_directories(folder_);
-  const fs::path path = folder_ / kDescriptionFile;
-  if (!fs::exists(path)) {
-    WriteText(path, description);
-  } else if (ReadText(path) != description) {
-    throw InputError(folder_.string(), "", "a folder of this data set's items",
-                     "one with another configuration or seed (" + path.string() + ")");
-  }
-}
-
-fs::path DatasetFolder::ItemPath(std::int64_t index) const { return folder_ / ItemName(index); }
-
-bool DatasetFolder::Has(std::int64_t index) const { return fs::exists(ItemPath(index)); }
-
-void DatasetFolder::Write(const DatasetItem& item) const {
-  WriteTensors(ItemPath(item.index), ItemsToTensors({item}));
+void WriteItem(const ItemFolder& folder, const DatasetItem& item) {
+  WriteTensors(folder.PathOf(item.index), ItemsToTensors({item}));
 }
 
 void MergeDataset(const std::vector<fs::path>& folders, std::int64_t count, const fs::path& out,
                   int items_per_shard) {
   PREGRASP_CHECK(!folders.empty() && count > 0 && items_per_shard > 0, count, items_per_shard);
-  const std::string description = ReadText(folders[0] / kDescriptionFile);
-  for (const fs::path& folder : folders) {
-    if (ReadText(folder / kDescriptionFile) != description) {
-      throw InputError(folder.string(), "", "items of the same data set", "another");
-    }
-  }
+  const ItemFolders sources(folders, kItemExtension, "data set");
   fs::create_directories(out);
   Counts total;
   std::map<std::string, Counts> families;
@@ -109,7 +59,7 @@ void MergeDataset(const std::vector<fs::path>& folders, std::int64_t count, cons
     const std::int64_t end = std::min(count, first + items_per_shard);
     std::vector<DatasetItem> items;
     for (std::int64_t i = first; i < end; ++i) {
-      items.push_back(ReadItem(folders, i));
+      items.push_back(ReadItem(sources, i));
       total.Add(items.back());
       families[items.back().family].Add(items.back());
     }
@@ -122,15 +72,15 @@ void MergeDataset(const std::vector<fs::path>& folders, std::int64_t count, cons
   }
   nlohmann::ordered_json index;
   index["format"] = "pregrasp dataset 1";
-  index["description"] = nlohmann::ordered_json::parse(description);
+  index["description"] = nlohmann::ordered_json::parse(sources.description());
   index["counts"] = total.ToJson();
   for (const auto& [family, counts] : families) index["families"][family] = counts.ToJson();
   index["shards"] = shards;
-  WriteText(out / kIndexFile, index.dump(1) + "\n");
+  WriteWholeFile(out / kIndexFile, index.dump(1) + "\n");
 }
 
 Dataset ReadDataset(const fs::path& folder) {
-  const std::string text = ReadText(folder / kIndexFile);
+  const std::string text = ReadWholeFile(folder / kIndexFile);
   Dataset dataset;
   dataset.hash = Sha256(text);
   std::vector<std::pair<std::string, std::string>> shards;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/batch/item_folder.h"
 #include "app/networks/contact_features.h"
 #include "app/networks/grasp_generator.h"
 #include "app/networks/safetensors.h"
@@ -69,22 +70,10 @@ TensorFile ItemsToTensors(const std::vector<DatasetItem>& items);
 /// @throws InputError if a table is missing, of another shape, or refers to a row that is not.
 std::vector<DatasetItem> ItemsFromTensors(const TensorFile& file);
 
-/// A folder in which items are being made: one file each, so that a run that was cut off goes on
-/// where it was, and shards of a run (item i belongs to shard i mod n) can be made anywhere.
-class DatasetFolder {
- public:
-  /// @param description  JSON of what decides the items (configuration, seed). A folder holds
-  ///   items of one description. @throws InputError if it already holds those of another.
-  DatasetFolder(std::filesystem::path folder, const std::string& description);
-
-  bool Has(std::int64_t index) const;
-  void Write(const DatasetItem& item) const;
-
- private:
-  std::filesystem::path ItemPath(std::int64_t index) const;
-
-  std::filesystem::path folder_;
-};
+/// Of the files that items are made in (ItemFolder).
+inline constexpr const char* kItemExtension = ".safetensors";
+/// @param folder  with kItemExtension.
+void WriteItem(const ItemFolder& folder, const DatasetItem& item);
 
 /// Puts items 0 .. count - 1, found in any of `folders`, together at `out`: shards of
 /// `items_per_shard` items and index.json with the description, counts per family and SHA-256 sums.

@@ -1,52 +1,23 @@
 #include "app/training/dataset_run.h"
 
-#include <mutex>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "app/core/error.h"
-#include "app/core/interrupt.h"
 #include "app/core/sha256.h"
 
 namespace pregrasp {
 
-void DatasetRun::Validate() const {
-  if (items < 1) throw InputError("", "items", "at least 1", std::to_string(items));
-  if (shards < 1 || shard < 1 || shard > shards) {
-    throw InputError("", "shard", "1/n to n/n",
-                     std::to_string(shard) + "/" + std::to_string(shards));
-  }
-}
-
-void MakeItems(const DatasetRun& run, const std::string& describe,
+void MakeItems(const DatasetRun& run, const std::string& description,
                const std::function<DatasetItem(std::int64_t)>& make,
-               const std::function<void(const DatasetProgress&)>& progress) {
+               const std::function<void(const BatchProgress&)>& progress) {
   run.Validate();
-  const DatasetFolder folder(run.folder, describe);
-  DatasetProgress state;
-  std::vector<std::int64_t> missing;
-  for (std::int64_t i = run.shard - 1; i < run.items; i += run.shards) {
-    ++state.total;
-    if (folder.Has(i)) {
-      ++state.done;
-    } else {
-      missing.push_back(i);
-    }
-  }
-  if (progress) progress(state);
-  ThreadPool pool(run.threads);
-  std::mutex mutex;
-  pool.ParallelFor(static_cast<int>(missing.size()), [&](int k, int) {
-    ThrowIfInterrupted();
-    folder.Write(make(missing[k]));
-    const std::lock_guard lock(mutex);
-    ++state.done;
-    if (progress) progress(state);
-  });
+  const ItemFolder folder(run.folder, description, kItemExtension);
+  RunItems(
+      run, folder, [&](std::int64_t index) { WriteItem(folder, make(index)); }, progress);
 }
 
 void MakeGraspItems(const DatasetRun& run, const ItemConfig& config,
-                    const std::function<void(const DatasetProgress&)>& progress) {
+                    const std::function<void(const BatchProgress&)>& progress) {
   MakeItems(
       run, config.ToJson(),
       [&](std::int64_t index) {
@@ -66,7 +37,7 @@ void RequireDescription(const Dataset& dataset, const ItemConfig& config,
 
 void MakeLabelItems(const DatasetRun& run, const ItemConfig& config,
                     const std::filesystem::path& grasps, const std::filesystem::path& generator,
-                    const std::function<void(const DatasetProgress&)>& progress) {
+                    const std::function<void(const BatchProgress&)>& progress) {
   using Json = nlohmann::ordered_json;
   const Dataset dataset = ReadDataset(grasps);
   RequireDescription(dataset, config, grasps);

@@ -5,36 +5,32 @@
 #include <functional>
 #include <string>
 
+#include "app/batch/run_items.h"
 #include "app/training/make_item.h"
 
 namespace pregrasp {
 
 /// Which items of a data set to make, and where.
-struct DatasetRun {
-  std::int64_t items = 2000;  ///< of the whole data set
-  int shard = 1, shards = 1;  ///< make items i with i mod shards = shard - 1
+struct DatasetRun : BatchRun {
   std::filesystem::path folder;
-  int threads = 0;  ///< 0: one per hardware thread. Items are spread over threads
 
-  /// @throws InputError.
-  void Validate() const;
+  DatasetRun() {
+    items = 2000;
+    threads = 0;
+  }
 };
 
-struct DatasetProgress {
-  std::int64_t done = 0, total = 0;  ///< items of this shard, those of earlier runs included
-};
-
-/// Makes the items that `run.folder` does not have yet. Cut off at any moment, the next call goes
-/// on; the files are the same bytes whatever the shards and threads.
-/// @param describe  JSON of all that decides an item, kept beside the items.
+/// Makes the items that `run.folder` does not have yet (RunItems); the files are the same bytes
+/// whatever the shards and threads.
+/// @param description  JSON of all that decides an item, kept beside the items.
 /// @throws InputError if the folder holds items of another description; Interrupted.
-void MakeItems(const DatasetRun& run, const std::string& describe,
+void MakeItems(const DatasetRun& run, const std::string& description,
                const std::function<DatasetItem(std::int64_t index)>& make,
-               const std::function<void(const DatasetProgress&)>& progress);
+               const std::function<void(const BatchProgress&)>& progress);
 
 /// Items with grasps, described by `config`.
 void MakeGraspItems(const DatasetRun& run, const ItemConfig& config,
-                    const std::function<void(const DatasetProgress&)>& progress);
+                    const std::function<void(const BatchProgress&)>& progress);
 
 /// @throws InputError naming `folder` if `dataset` was not made with `config`.
 void RequireDescription(const Dataset& dataset, const ItemConfig& config,
@@ -45,6 +41,6 @@ void RequireDescription(const Dataset& dataset, const ItemConfig& config,
 /// @throws InputError if `grasps` was made with another configuration.
 void MakeLabelItems(const DatasetRun& run, const ItemConfig& config,
                     const std::filesystem::path& grasps, const std::filesystem::path& generator,
-                    const std::function<void(const DatasetProgress&)>& progress);
+                    const std::function<void(const BatchProgress&)>& progress);
 
 }  // namespace pregrasp

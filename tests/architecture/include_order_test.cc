@@ -17,11 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kOrder = {
-    "app/core",       "app/scene",    "app/geometry", "app/dynamics",
-    "app/hand",       "app/networks", "app/grasp",    "app/graph",
-    "app/trajectory", "app/motion",   "app/training", "app/job",
-    "app/recording",  "render",       "app/pictures", "app/session",
-    "bindings",       "app/commands", "app"};
+    "app/core",     "app/scene",    "app/geometry", "app/dynamics",   "app/hand",
+    "app/networks", "app/grasp",    "app/graph",    "app/trajectory", "app/motion",
+    "app/batch",    "app/training", "app/job",      "app/recording",  "render",
+    "app/pictures", "app/session",  "bindings",       "app/commands",
+    "app"};
 
 // Folders of render's and the planner's that are closed to it although they stand above it.
 const std::map<std::string, std::set<std::string>> kOnly = {
@@ -105,8 +105,9 @@ TEST(IncludeOrderTest, EachLibraryStaysInTheFolderThatOwnsIt) {
 }
 
 TEST(IncludeOrderTest, EveryTopFolderHasAReadme) {
-  for (const char* folder : {"app", "bindings", "lua", "scenes", "assets", "render", "tests",
-                             "app/job", "app/recording", "app/pictures", "app/session"}) {
+  for (const char* folder :
+       {"app", "bindings", "lua", "scenes", "assets", "render", "tests", "app/batch", "app/job",
+        "app/recording", "app/pictures", "app/session"}) {
     EXPECT_TRUE(fs::exists(fs::path(PREGRASP_SOURCE_DIR) / folder / "README.md")) << folder;
   }
 }

@@ -54,8 +54,7 @@ class DatasetRunTest : public ::testing::Test {
   DatasetRun Shard(const std::string& name, int shard = 1, int shards = 1) const {
     DatasetRun run;
     run.items = 4;
-    run.shard = shard;
-    run.shards = shards;
+    run.shard = {shard, shards};
     run.folder = folder_ / name;
     run.threads = 1;
     return run;
@@ -79,7 +78,7 @@ TEST_F(DatasetRunTest, ShardsAndOneRunMergeToTheSameBytes) {
 
 TEST_F(DatasetRunTest, ARunThatWasCutOffGoesOnToTheSameBytes) {
   MakeGraspItems(Shard("whole"), SmallConfig(), {});
-  const auto interrupt = [](const DatasetProgress& progress) {
+  const auto interrupt = [](const BatchProgress& progress) {
     if (progress.done == 2) RequestInterrupt();
   };
   EXPECT_THROW(MakeGraspItems(Shard("cut"), SmallConfig(), interrupt), Interrupted);
@@ -87,7 +86,7 @@ TEST_F(DatasetRunTest, ARunThatWasCutOffGoesOnToTheSameBytes) {
   // As a kill in the middle of writing leaves it.
   std::ofstream(folder_ / "cut" / "item-000002.safetensors.partial") << "half";
   std::int64_t found = -1;
-  MakeGraspItems(Shard("cut"), SmallConfig(), [&](const DatasetProgress& progress) {
+  MakeGraspItems(Shard("cut"), SmallConfig(), [&](const BatchProgress& progress) {
     if (found < 0) found = progress.done;
   });
   EXPECT_EQ(found, 2);
@@ -122,8 +121,7 @@ TEST_F(DatasetRunTest, LabelsAreSharesAndKnowWhatTheyWereMadeFrom) {
 
 TEST_F(DatasetRunTest, NonsenseIsRefused) {
   DatasetRun run = Shard("none");
-  run.shard = 3;
-  run.shards = 2;
+  run.shard = {3, 2};
   EXPECT_THROW(MakeGraspItems(run, SmallConfig(), {}), InputError);
   EXPECT_FALSE(fs::exists(run.folder));
 }

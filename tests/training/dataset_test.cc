@@ -131,13 +131,13 @@ TEST_F(DatasetTest, ALabelIsTheMeanShareOverTheReliefs) {
 
 TEST_F(DatasetTest, ShardsMadeApartMergeToTheSameBytes) {
   constexpr int kItems = 11;
-  const DatasetFolder whole(root_ / "whole", description_);
-  for (int i = 0; i < kItems; ++i) whole.Write(MakeItem(i));
+  const ItemFolder whole(root_ / "whole", description_, kItemExtension);
+  for (int i = 0; i < kItems; ++i) WriteItem(whole, MakeItem(i));
   std::vector<fs::path> parts;
   for (int s = 0; s < 3; ++s) {
     parts.push_back(root_ / ("part" + std::to_string(s)));
-    const DatasetFolder part(parts.back(), description_);
-    for (int i = s; i < kItems; i += 3) part.Write(MakeItem(i));
+    const ItemFolder part(parts.back(), description_, kItemExtension);
+    for (int i = s; i < kItems; i += 3) WriteItem(part, MakeItem(i));
   }
   MergeDataset({root_ / "whole"}, kItems, root_ / "a", 4);
   MergeDataset(parts, kItems, root_ / "b", 4);
@@ -151,18 +151,18 @@ TEST_F(DatasetTest, ShardsMadeApartMergeToTheSameBytes) {
 }
 
 TEST_F(DatasetTest, AFolderKnowsWhatItHasAndRefusesAnotherConfiguration) {
-  const DatasetFolder folder(root_ / "items", description_);
+  const ItemFolder folder(root_ / "items", description_, kItemExtension);
   EXPECT_FALSE(folder.Has(2));
-  folder.Write(MakeItem(2));
-  EXPECT_TRUE(DatasetFolder(root_ / "items", description_).Has(2));
+  WriteItem(folder, MakeItem(2));
+  EXPECT_TRUE(ItemFolder(root_ / "items", description_, kItemExtension).Has(2));
   EXPECT_FALSE(folder.Has(3));
-  EXPECT_THROW(DatasetFolder(root_ / "items", R"({"seed":2})"), InputError);
+  EXPECT_THROW(ItemFolder(root_ / "items", R"({"seed":2})", kItemExtension), InputError);
   EXPECT_THROW(MergeDataset({root_ / "items"}, 4, root_ / "out"), InputError);  // 0 is missing
 }
 
 TEST_F(DatasetTest, AnAlteredDataSetIsRefused) {
-  const DatasetFolder folder(root_ / "items", description_);
-  for (int i = 0; i < 3; ++i) folder.Write(MakeItem(i));
+  const ItemFolder folder(root_ / "items", description_, kItemExtension);
+  for (int i = 0; i < 3; ++i) WriteItem(folder, MakeItem(i));
   MergeDataset({root_ / "items"}, 3, root_ / "data");
   EXPECT_NO_THROW(ReadDataset(root_ / "data"));
   {
