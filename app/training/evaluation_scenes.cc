@@ -10,17 +10,14 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> FindEvaluationScenes(const fs::path& data) {
   std::vector<fs::path> files;
-  for (const char* name : {"scenes", "app/training/evaluation_objects"}) {
-    const fs::path folder = data / name;
-    const std::size_t before = files.size();
-    std::error_code error;
-    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-      if (it->path().extension() == ".lua") files.push_back(it->path());
-    }
-    if (error || files.size() == before) {
-      throw InputError(folder.string(), "", "scene files of the objects that training leaves out",
-                       error ? error.message() : "none");
-    }
+  const fs::path folder = data / "scenes";
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == ".lua") files.push_back(it->path());
+  }
+  if (error || files.empty()) {
+    throw InputError(folder.string(), "", "scene files of the objects that training leaves out",
+                     error ? error.message() : "none");
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(EvaluationScenesTest, AreAllThatShipAndThoseToCome) {
+TEST(EvaluationScenesTest, AreAllThatShip) {
   std::set<std::string> names;
   for (const fs::path& file : FindEvaluationScenes(PREGRASP_SOURCE_DIR)) {
     names.insert(file.stem().string());
@@ -23,8 +23,7 @@ TEST(EvaluationScenesTest, AreAllThatShipAndThoseToCome) {
 
 TEST(EvaluationScenesTest, AFolderThatIsMissingOrEmptyIsAnErrorAndNeverNoExclusions) {
   const TestFolder folder;
-  const fs::path data = folder.path(), scenes = data / "scenes",
-                 objects = data / "app/training/evaluation_objects";
+  const fs::path data = folder.path(), scenes = data / "scenes";
   const auto missing = [&]() -> std::string {
     try {
       FindEvaluationScenes(data);
@@ -35,15 +34,12 @@ TEST(EvaluationScenesTest, AFolderThatIsMissingOrEmptyIsAnErrorAndNeverNoExclusi
   };
   EXPECT_NE(missing().find(scenes.string()), std::string::npos) << missing();
   fs::create_directories(scenes);
+  std::ofstream(scenes / "README.md") << "no scene";
   EXPECT_NE(missing().find(scenes.string()), std::string::npos) << missing();
   std::ofstream(scenes / "cup.lua") << "return {}";
-  EXPECT_NE(missing().find(objects.string()), std::string::npos) << missing();
-  fs::create_directories(objects);
-  std::ofstream(objects / "README.md") << "no scene";
-  EXPECT_NE(missing().find(objects.string()), std::string::npos) << missing();
-  std::ofstream(objects / "bowl.lua") << "return {}";
+  std::ofstream(scenes / "bowl.lua") << "return {}";
   EXPECT_EQ(FindEvaluationScenes(data),
-            (std::vector<fs::path>{objects / "bowl.lua", scenes / "cup.lua"}));
+            (std::vector<fs::path>{scenes / "bowl.lua", scenes / "cup.lua"}));
 }
 
 }  // namespace
