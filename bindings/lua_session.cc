@@ -180,13 +180,13 @@ Pushed SessionVerdict(lua_State* L, Session& session) {
       .Set("verdict", verdict.verdict)
       .Set("mu", verdict.mu)
       .Set("mu_star", verdict.mu_star)
+      .Set("thin", verdict.thin)
       .Set("sentence", verdict.sentence)
       .Set("step_id", node.id());
   return {1};
 }
 
 Pushed SessionSimulate(lua_State* L, const std::shared_ptr<Session>& session,
-      .Set("thin", verdict.thin)
                        const SimulateOptions& options) {
   PushObject(
       L, std::make_shared<LuaSimulation>(LuaSimulation{session, &session->start(), options.trace}));

@@ -20,8 +20,7 @@ const std::vector<std::string> kOrder = {
     "app/core",     "app/scene",    "app/geometry", "app/dynamics",   "app/hand",
     "app/networks", "app/grasp",    "app/graph",    "app/trajectory", "app/motion",
     "app/batch",    "app/training", "app/job",      "app/recording",  "render",
-    "app/pictures", "app/session",  "bindings",       "app/commands",
-    "app"};
+    "app/pictures", "app/session",  "bindings",     "app/commands",   "app"};
 
 // Folders of render's and the planner's that are closed to it although they stand above it.
 const std::map<std::string, std::set<std::string>> kOnly = {

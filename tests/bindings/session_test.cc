@@ -16,7 +16,7 @@ using ::testing::internal::CaptureStdout;
 using ::testing::internal::GetCapturedStdout;
 
 // A 0.2 kg cube on a table, and a movable neighbour.
-const char* const kPrelude = R"(local pg = require "pregrasp"
+const char* const kSessionPrelude = R"(local pg = require "pregrasp"
 local table_body = { name = "table", shape = pg.box{1, 1, 0.1}, p = {0, 0, -0.05}, friction = 0.4 }
 local function cube(name, x)
   return { name = name, shape = pg.box{0.1, 0.1, 0.1}, mass = 0.2, p = {x, 0, 0.05}, friction = 0.4 }
@@ -34,7 +34,7 @@ ScriptConfig ConfigIn(const TestFolder& folder) {
 
 // What the script prints.
 std::string RunIn(const TestFolder& folder, const std::string& body, ScriptConfig config) {
-  const auto file = folder.Write("test.lua", kPrelude + body);
+  const auto file = folder.Write("test.lua", kSessionPrelude + body);
   CaptureStdout();
   try {
     RunScript(file, {}, config);
