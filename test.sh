@@ -33,7 +33,7 @@ lint() {
   # gcc's precompiled headers, which the release build has, mean nothing to clang-tidy; it reads a folder that is configured only.
   ./build.sh debug --configure-only --with packages-dev.txt --with packages-train.txt -DPREGRASP_TRAINER=ON || return 1
   tests/check_format.sh || failed=1
-  luacheck --quiet scenes lua docs assets || failed=1
+  luacheck --quiet scenes lua docs assets tests/ladders || failed=1
   find app render bindings -name '*.cc' -print0 | sort -z |
     xargs -0 -n 1 -P "$jobs" clang-tidy -p build/debug --quiet 2> >(grep -v ' warnings\? generated' >&2) || failed=1
   return "$failed"

@@ -35,6 +35,7 @@ int Run(int argc, char** argv) {
   AddCheck(command, action);
   AddDataset(command, action);
   AddDiff(command, action);
+  AddEval(command, action);
   AddInfo(command, action);
   AddRepl(command, action);
   AddRun(command, action);

@@ -70,22 +70,14 @@ ShapePtr MakeShape(lua_State* L, Shape shape, int parts = 1, int depth = 1) {
   return std::make_shared<const LuaShape>(LuaShape{std::move(shape), WhereInLua(L), parts, depth});
 }
 
-// Every constructor takes one table.
-struct OneTable {
-  lua_State* L = nullptr;
-};
-
 }  // namespace
 
-template <>
-struct LuaValue<OneTable> {
-  static OneTable Read(lua_State* L, int index, const std::string& /*path*/) {
-    if (!lua_istable(L, index)) {
-      throw InputError("", "", "one table in braces {..}", DescribeValue(L, index));
-    }
-    return {L};
+OneTable LuaValue<OneTable>::Read(lua_State* L, int index, const std::string& /*path*/) {
+  if (!lua_istable(L, index)) {
+    throw InputError("", "", "one table in braces {..}", DescribeValue(L, index));
   }
-};
+  return {L};
+}
 
 namespace {
 
@@ -115,15 +107,6 @@ ShapePtr MakeFileShape(OneTable table) {
   shape.file = fields.Positional<std::string>(1, "file");
   shape.scale = fields.Optional<double>("scale", 1.0);
   return MakeShape(table.L, std::move(shape));
-}
-
-RigidTransform ReadPose(const Fields& fields) {
-  const Vector3 p = fields.Optional<Vector3>("p", Vector3::Zero());
-  const Vector3 rpy_deg = fields.Optional<Vector3>("rpy_deg", Vector3::Zero());
-  for (const double angle : rpy_deg) {
-    RequireWithin(fields.where(), fields.Path("rpy_deg"), kAngleRange, angle);
-  }
-  return MakeTransform(RotationFromRpy(rpy_deg * (kPi / 180.0)), p);
 }
 
 ShapePtr ReadShape(lua_State* L, const Fields& fields) {
@@ -272,6 +255,15 @@ std::shared_ptr<const Scene> MakeScene(OneTable table) {
 }
 
 }  // namespace
+
+RigidTransform ReadPose(const Fields& fields) {
+  const Vector3 p = fields.Optional<Vector3>("p", Vector3::Zero());
+  const Vector3 rpy_deg = fields.Optional<Vector3>("rpy_deg", Vector3::Zero());
+  for (const double angle : rpy_deg) {
+    RequireWithin(fields.where(), fields.Path("rpy_deg"), kAngleRange, angle);
+  }
+  return MakeTransform(RotationFromRpy(rpy_deg * (kPi / 180.0)), p);
+}
 
 CameraConfig ReadCamera(lua_State* L, const Fields& owner, const std::string& key) {
   owner.Push(key);

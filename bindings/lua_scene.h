@@ -17,6 +17,15 @@ struct LuaShape {
   int depth = 1;
 };
 
+/// What every constructor of a scene or ladder file takes: one table, at index 1 of the stack.
+struct OneTable {
+  lua_State* L = nullptr;
+};
+template <>
+struct LuaValue<OneTable> {
+  static OneTable Read(lua_State* L, int index, const std::string& path);
+};
+
 /// scene, box, cylinder, capsule, sphere, mesh, cloud and union, for a module or as globals.
 const std::vector<FunctionInfo>& SceneConstructors();
 
@@ -33,6 +42,9 @@ Scene ReadScene(lua_State* L, int index);
 
 /// The table {p = .., look_at = .., fov_deg = ..} under `key` of another.
 CameraConfig ReadCamera(lua_State* L, const Fields& owner, const std::string& key);
+
+/// The keys p and rpy_deg, both optional, as a pose. @throws InputError.
+RigidTransform ReadPose(const Fields& fields);
 
 /// From now on the constructor `scene` of this state may be called once.
 void AllowOneScene(lua_State* L);

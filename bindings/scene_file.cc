@@ -4,7 +4,6 @@
 #include "app/core/error.h"
 #include "app/geometry/load_shape.h"
 #include "bindings/lua_scene.h"
-#include "bindings/machine.h"
 #include "bindings/sandbox.h"
 #include "bindings/value.h"
 
@@ -47,6 +46,14 @@ struct FileFinder {
 
 }  // namespace
 
+MachineConfig SceneFileLimits() {
+  MachineConfig config;
+  config.seconds = kSceneSeconds;
+  config.bytes = kSceneBytes;
+  config.time_flag.clear();
+  return config;
+}
+
 void FinishScene(Scene& scene, const fs::path& folder, std::vector<Setting>& settings) {
   ApplySceneSettings(scene, settings);
   ValidateScene(scene);
@@ -60,11 +67,7 @@ void FinishScene(Scene& scene, const fs::path& folder, std::vector<Setting>& set
 }
 
 Scene LoadSceneFile(const fs::path& file, std::vector<Setting>& settings) {
-  MachineConfig config;
-  config.seconds = kSceneSeconds;
-  config.bytes = kSceneBytes;
-  config.time_flag.clear();
-  Machine machine(config);
+  Machine machine(SceneFileLimits());
   lua_State* L = machine.state();
   AllowOneScene(L);
   for (const FunctionInfo& constructor : SceneConstructors()) {

@@ -6,10 +6,14 @@
 
 #include "app/scene/scene.h"
 #include "app/scene/settings.h"
+#include "bindings/machine.h"
 
 namespace pregrasp {
 
-/// Runs a scene file in a Lua world of its own (2 s, 64 MB) and returns its scene: settings
+/// Of the Lua world that a scene's or ladder's file runs in: 2 s, 64 MB.
+MachineConfig SceneFileLimits();
+
+/// Runs a scene file in a Lua world of its own and returns its scene: settings
 /// applied, validated, shapes loaded. Settings that are not the scene's stay in the list.
 /// @throws InputError with file:line where there is one.
 Scene LoadSceneFile(const std::filesystem::path& file, std::vector<Setting>& settings);

@@ -13,6 +13,7 @@ using Action = std::function<int()>;
 void AddCheck(const Subcommand& app, Action& action);
 void AddDataset(const Subcommand& app, Action& action);
 void AddDiff(const Subcommand& app, Action& action);
+void AddEval(const Subcommand& app, Action& action);
 void AddInfo(const Subcommand& app, Action& action);
 void AddRepl(const Subcommand& app, Action& action);
 void AddRun(const Subcommand& app, Action& action);

@@ -9,7 +9,9 @@ namespace pregrasp {
 
 ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
 
-ProgressLine::~ProgressLine() {
+ProgressLine::~ProgressLine() { Clear(); }
+
+void ProgressLine::Clear() {
   if (terminal_ && !stage_.empty()) fmt::print(stderr, "\r\033[K");
 }
 

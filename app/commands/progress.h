@@ -18,6 +18,9 @@ class ProgressLine {
   /// `done` of `total` pieces of `stage` are done. What is done at a stage's first call was done
   /// before, and does not count in the rate.
   void Show(const std::string& stage, int done, int total);
+  /// Takes the line off a terminal, so that something else can be printed; the next Show brings it
+  /// back.
+  void Clear();
 
  private:
   bool terminal_;

@@ -47,6 +47,11 @@ Option Subcommand::AddFlag(const std::string& name, bool& value, const std::stri
 }
 
 Option Subcommand::AddSeed(std::uint64_t& seed, const std::string& text) const {
+  return AddSeed("--seed", seed, text);
+}
+
+Option Subcommand::AddSeed(const std::string& name, std::uint64_t& seed,
+                           const std::string& text) const {
   const CLI::Validator digits(
       [](const std::string& text) {
         std::uint64_t value = 0;
@@ -57,7 +62,7 @@ Option Subcommand::AddSeed(std::uint64_t& seed, const std::string& text) const {
                     : "expected a whole number from 0 to 2^64 - 1, got \"" + text + '"';
       },
       "N", "seed");
-  return Option(*app_->add_option("--seed", seed, text)->capture_default_str()->check(digits));
+  return Option(*app_->add_option(name, seed, text)->capture_default_str()->check(digits));
 }
 
 void Subcommand::OnChosen(const std::function<void()>& action) const { app_->callback(action); }

@@ -47,8 +47,10 @@ class Subcommand {
   template <typename Value>
   Option Add(const std::string& name, Value& value, const std::string& text) const;
   Option AddFlag(const std::string& name, bool& value, const std::string& text) const;
-  /// --seed, a whole number from 0. (CLI11 alone would take -1 for the largest of them.)
+  /// --seed, or another name, a whole number from 0. (CLI11 alone would take -1 for the largest of
+  /// them.)
   Option AddSeed(std::uint64_t& seed, const std::string& text) const;
+  Option AddSeed(const std::string& name, std::uint64_t& seed, const std::string& text) const;
 
   /// What is done when the command line names this command, after its values are set.
   void OnChosen(const std::function<void()>& action) const;

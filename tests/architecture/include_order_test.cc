@@ -20,7 +20,8 @@ const std::vector<std::string> kOrder = {
     "app/core",     "app/scene",    "app/geometry", "app/dynamics",   "app/hand",
     "app/networks", "app/grasp",    "app/graph",    "app/trajectory", "app/motion",
     "app/batch",    "app/training", "app/job",      "app/recording",  "render",
-    "app/pictures", "app/session",  "bindings",     "app/commands",   "app"};
+    "app/pictures", "app/session",  "app/studies",  "bindings",       "app/commands",
+    "app"};
 
 // Folders of render's and the planner's that are closed to it although they stand above it.
 const std::map<std::string, std::set<std::string>> kOnly = {
@@ -106,7 +107,7 @@ TEST(IncludeOrderTest, EachLibraryStaysInTheFolderThatOwnsIt) {
 TEST(IncludeOrderTest, EveryTopFolderHasAReadme) {
   for (const char* folder :
        {"app", "bindings", "lua", "scenes", "assets", "render", "tests", "app/batch", "app/job",
-        "app/recording", "app/pictures", "app/session"}) {
+        "app/recording", "app/pictures", "app/session", "app/studies"}) {
     EXPECT_TRUE(fs::exists(fs::path(PREGRASP_SOURCE_DIR) / folder / "README.md")) << folder;
   }
 }

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/batch/run_items.h"
+#include "app/studies/study.h"
+
+namespace pregrasp {
+
+/// One run of a study, or of a shard of it, into a folder:
+///   items/item-000012.json  one file an item, there when the item is done
+///   items/description.json  the study, the build, scenes, seeds, settings, weights
+///   NAME.json, ..           the study's tables, there when all items are
+struct EvalConfig {
+  std::string study;
+  StudySetup setup;
+  Shard shard;
+  std::filesystem::path out;
+};
+
+/// What a line of progress says: an item that was just made, with its description, or none at the
+/// start.
+struct EvalProgress {
+  BatchProgress batch;
+  std::string made;
+};
+
+/// Makes the items of the shard that are missing; then, if all items of the study are there, its
+/// tables. Cut off at any moment, the next call goes on.
+/// @returns whether the tables were written.
+/// @throws InputError for a scene or settings outside the project's rules, which no table may hold;
+/// for a folder with items of another build, other scenes, seeds or settings, naming the
+/// difference; Interrupted.
+bool RunEval(const EvalConfig& config, const std::function<void(const EvalProgress&)>& progress);
+
+/// Puts the items of shards together at `out`, with the tables: the same files as one run's, but
+/// for seconds.
+/// @throws InputError if the folders' descriptions differ, or an item is missing.
+void MergeEval(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out);
+
+}  // namespace pregrasp
