@@ -1,5 +1,5 @@
--- A roll of receipt paper, 57 x 40 mm, stands in a compartment that is 2 mm wider, a wall 1 mm behind it. Its
--- core is too narrow for a fingertip.
+-- A roll of receipt paper, 57 x 40 mm, stands in a compartment that is 2 mm wider, a wall 1 mm behind it. A
+-- plug closes its core at the upper end: the core's edge and the front would be enough to pinch.
 return scene {
   name = "paper_roll",
   object = {
@@ -8,8 +8,8 @@ return scene {
   environment = {
     -- The front edge is x = 0, the floor z = 0.
     { name = "floor", shape = box{0.061, 0.200, 0.010}, friction = 0.3, p = {-0.0305, 0, -0.005} },
-    { name = "back", shape = box{0.010, 0.200, 0.070}, friction = 0.3, p = {-0.056, 0, 0.025} },
-    { name = "left", shape = box{0.051, 0.010, 0.057}, friction = 0.3, p = {-0.0255, -0.026, 0.0285} },
-    { name = "right", shape = box{0.051, 0.010, 0.057}, friction = 0.3, p = {-0.0255, 0.026, 0.0285} },
+    { name = "back", shape = box{0.010, 0.200, 0.080}, friction = 0.3, p = {-0.056, 0, 0.030} },
+    { name = "left", shape = box{0.051, 0.010, 0.070}, friction = 0.3, p = {-0.0255, -0.026, 0.035} },
+    { name = "right", shape = box{0.051, 0.010, 0.070}, friction = 0.3, p = {-0.0255, 0.026, 0.035} },
   },
 }

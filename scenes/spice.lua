@@ -3,8 +3,7 @@
 local function tin(name, y)
   return {
     name = name, mass = 0.14, friction = 0.3, p = {-0.034, y, 0.055},
-    shape = union{ { shape = box{0.048, 0.048, 0.108}, p = {0, 0, -0.001} },
-                   { shape = cylinder{0.019, 0.002}, p = {0, 0, 0.054} } },  -- the lid
+    shape = box{0.048, 0.048, 0.110},  -- the lid is let in: fingers could close on the edge of one that stands out
   }
 end
 

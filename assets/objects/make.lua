@@ -80,12 +80,9 @@ function make.container()
   close(rings[#rings], true)
 end
 
--- A roll of receipt paper for a card terminal: 57 mm wide, 40 mm thick, with a 12 mm core.
-local function roll(sides, h, r, core)
-  local rings = { circle(core, 0, sides), circle(r, 0, sides), circle(r, h, sides), circle(core, h, sides) }
-  for i = 1, 4 do join(rings[i], rings[i % 4 + 1]) end
-end
-function make.paper_roll() roll(36, 57, 20, 6) end
+-- A roll of receipt paper for a card terminal: 57 mm wide, 40 mm thick, with a 12 mm core that a plug of 5 mm
+-- closes at its upper end.
+function make.paper_roll() turn({ { 6, 52 }, { 6, 0 }, { 20, 0 }, { 20, 57 } }, 36) end
 
 -- A C of 3 mm sheet, 120 mm wide, open towards +x.
 function make.c_shape()
@@ -118,10 +115,10 @@ local function points_of_roll()
   end
   for z = step / 2, h - step / 4, step do
     add(r, z, 1, 0)
-    add(core, z, -1, 0)
+    if z < h - 5 then add(core, z, -1, 0) end
   end
-  for radius = core + step / 2, r - step / 4, step do
-    add(radius, 0, 0, -1)
+  for radius = step / 2, r - step / 4, step do
+    add(radius, radius < core and h - 5 or 0, 0, -1)
     add(radius, h, 0, 1)
   end
   return points

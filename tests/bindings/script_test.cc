@@ -139,19 +139,6 @@ TEST(InfoTest, NamesTheProgramItsLibrariesAndTheRenderer) {
   }
 }
 
-TEST(CheckCommandTest, TheShippedScenesAreClean) {
-  const TestFolder folder;
-  int count = 0;
-  for (const auto& entry : fs::directory_iterator(kSource / "scenes")) {
-    if (entry.path().extension() != ".lua") continue;
-    ++count;
-    const ProgramResult result = RunProgram({"check", "--no-grasps", entry.path()}, folder.path());
-    EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.out.find("clean"), std::string::npos) << result.out;
-  }
-  EXPECT_GE(count, 1);
-}
-
 TEST(CheckCommandTest, SetChangesTheSceneAndADepartureIsAWarning) {
   const TestFolder folder;
   const std::string scene = kSource / "scenes/ruler.lua";

@@ -23,25 +23,36 @@ std::string FileOf(const std::string& name) {
   return PREGRASP_SOURCE_DIR "/scenes/" + name + ".lua";
 }
 
-void ExpectClean(const std::vector<std::string>& arguments) {
+// What a scene is warned of and keeps: a reconstructed core takes more convex pieces than there may
+// be.
+std::string KnownWarning(const std::string& name) {
+  return name == "paper_roll_cloud" ? "mm thicker in contact than its mesh" : "";
+}
+
+void ExpectClean(const std::string& name, std::vector<std::string> arguments) {
+  arguments.push_back(FileOf(name));
   const TestFolder folder;
   setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);  // no verdict of an earlier build
   const ProgramResult result = RunProgram(arguments, folder.path());
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_EQ(result.out.find("warning"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find(": clean, "), std::string::npos) << result.out;
+  const std::string known = KnownWarning(name);
+  if (known.empty()) {
+    EXPECT_EQ(result.out.find("warning"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(": clean, "), std::string::npos) << result.out;
+    return;
+  }
+  EXPECT_NE(result.out.find(known), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find(": usable, warnings: 1, "), std::string::npos) << result.out;
 }
 
 class ShippedScenesTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedScenesTest, AreAtRestWithoutOverlapAndWithinTheRules) {
-  ExpectClean({"check", "--no-grasps", FileOf(GetParam())});
+  ExpectClean(GetParam(), {"check", "--no-grasps"});
 }
 
 // A search takes up to half a minute.
-TEST_P(ShippedScenesTest, LongAreUngraspableAtTheStart) {
-  ExpectClean({"check", FileOf(GetParam())});
-}
+TEST_P(ShippedScenesTest, LongAreUngraspableAtTheStart) { ExpectClean(GetParam(), {"check"}); }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ShippedScenesTest, testing::ValuesIn(ShippedScenes()),
                          [](const auto& scene) { return scene.param; });
