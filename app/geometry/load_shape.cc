@@ -16,6 +16,10 @@ namespace pregrasp {
 namespace {
 
 constexpr double kMaxSize = 100.0;  // [m], as for primitives; a larger mesh is a unit error
+// What a hand is to pick up; `check` warns of what is larger than 2 m.
+constexpr double kMaxObjectSize = 5.0;  // [m]
+// Beyond these a number is a wrong unit: air has 1.2 kg/m^3, osmium 22600.
+constexpr double kLeastDensity = 0.1, kMostDensity = 1e6;  // [kg/m^3]
 
 std::string Count(int count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
@@ -32,6 +36,19 @@ void RequireSaneSize(const MatrixX3& V, const std::string& name, const std::stri
     throw InputError(where, field, "a shape at most 100 m long (scale = 0.001 for millimetres)",
                      fmt::format("{}, which is {:.6g} m long", name, size));
   }
+}
+
+// The object's, before anything is built from it.
+void RequireObjectSize(const AlignedBox& bounds, const std::string& where, const std::string& field,
+                       bool from_file) {
+  const double size = bounds.sizes().maxCoeff();
+  if (size <= kMaxObjectSize) return;
+  throw InputError(where, field,
+                   fmt::format("an object at most {:g} m long, in metres ({})", kMaxObjectSize,
+                               from_file ? "scale = 0.001 for a file in millimetres, 0.01 for "
+                                           "centimetres"
+                                         : "60 mm are 0.06"),
+                   fmt::format("one of {:.4g} m", size));
 }
 
 void RequireFinitePoints(const MatrixX3& V, const std::string& name, const std::string& where,
@@ -96,6 +113,7 @@ struct Loader {
   const std::filesystem::path& directory;
   const std::string& where;
   std::string field;
+  bool object = false;
 
   template <typename Reader>
   auto Read(const std::string& name, Reader&& read) const {
@@ -118,6 +136,7 @@ struct Loader {
     cloud.points = cloud.scale * read.P;
     RequireFinitePoints(cloud.points, name, where, field);
     RequireSaneSize(cloud.points, name, where, field);
+    if (object) RequireObjectSize(BoundsOfPoints(cloud.points), where, field, true);
     try {
       cloud.mesh = ReconstructSurface(cloud.points, read.N).mesh;
     } catch (const UnclosedCloud& error) {
@@ -126,13 +145,24 @@ struct Loader {
   }
   void operator()(Union& whole) const {
     for (std::size_t i = 0; i < whole.parts.size(); ++i) {
-      std::visit(Loader{directory, where, fmt::format("{}[{}]", field, i + 1)},
+      std::visit(Loader{directory, where, fmt::format("{}[{}]", field, i + 1), object},
                  whole.parts[i].shape);
     }
   }
   template <typename Primitive>
   void operator()(Primitive&) const {}
 };
+
+// A mass that its volume cannot have.
+void RequireDensity(const Body& body, const std::string& field) {
+  const double mass = body.mass_properties->mass;
+  const double volume = CalcVolume(body.shape);
+  if (mass >= kLeastDensity * volume && mass <= kMostDensity * volume) return;
+  throw InputError(body.where, field,
+                   fmt::format("a mass in kg of {:g} to {:g} kg/m^3, of a shape in metres",
+                               kLeastDensity, kMostDensity),
+                   fmt::format("{:.3g} kg in {:.3g} m^3", mass, volume));
+}
 
 void FillMassProperties(Body& body) {
   MassProperties& given = *body.mass_properties;
@@ -181,8 +211,14 @@ void LoadShapes(Scene& scene, const std::filesystem::path& directory) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     Body& body = scene.bodies[b];
     const std::string field = b == 0 ? "object.shape" : fmt::format("environment[{}].shape", b);
-    LoadShape(body.shape, directory, body.where, field);
-    if (body.movable()) FillMassProperties(body);
+    std::visit(Loader{directory, body.where, field, b == 0}, body.shape);
+    if (b == 0) {
+      const bool from_file = std::holds_alternative<Mesh>(body.shape);
+      RequireObjectSize(CalcBounds(body.shape), body.where, field, from_file);
+    }
+    if (!body.movable()) continue;
+    RequireDensity(body, b == 0 ? "object.mass" : fmt::format("environment[{}].mass", b));
+    FillMassProperties(body);
   }
 }
 

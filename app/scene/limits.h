@@ -17,6 +17,7 @@ inline constexpr NumberRange kForceRange{0.01, 1000.0, 0, "N"};          ///< fi
 inline constexpr NumberRange kStiffnessRange{0.1, 100'000.0, 0, "N/m"};  ///< of a fingertip
 inline constexpr NumberRange kDampingRange{0.0, 100.0};  ///< of a fingertip, over sqrt(k m)
 inline constexpr NumberRange kGravityRange{-100.0, 100.0, 0, "m/s^2"};
+inline constexpr int kMostBodies = 500;  ///< of a scene
 inline constexpr NumberRange kFovRange{1.0, 150.0, 0, "deg"};
 
 }  // namespace pregrasp

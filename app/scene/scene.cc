@@ -129,6 +129,10 @@ void ValidateScene(const Scene& scene) {
   if (scene.bodies.size() < 2) {
     throw InputError(where, "environment", "at least one body", "none");
   }
+  if (scene.bodies.size() > kMostBodies) {
+    throw InputError(where, "environment", fmt::format("at most {} bodies", kMostBodies - 1),
+                     std::to_string(scene.bodies.size() - 1));
+  }
   std::set<std::string> names;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
