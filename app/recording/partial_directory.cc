@@ -125,7 +125,33 @@ void Recover(const fs::path& target, const fs::path& partial, const fs::path& re
   RemoveOurs(partial);
 }
 
+fs::path ResolveOutsideRuns(const fs::path& directory) {
+  fs::path resolved = Resolve(directory);
+  RequireOutsideRuns(resolved);
+  return resolved;
+}
+
 }  // namespace
+
+void RequireOutsideRuns(const fs::path& path) {
+  std::error_code error;
+  const auto is_being_written = [&](const fs::path& directory) {
+    return fs::exists(WithSuffix(directory, ".partial") / kUnfinishedMark, error);
+  };
+  const auto refuse = [&](const fs::path& run) {
+    throw InputError(path.string(), "", "a place outside of run directories",
+                     "one in the run " + run.filename().string());
+  };
+  const fs::path resolved = Resolve(path);
+  for (fs::path at = resolved.parent_path(); at != at.root_path(); at = at.parent_path()) {
+    const bool partial = fs::exists(at / kUnfinishedMark, error);
+    if (partial || is_being_written(at) || IsFinishedRun(at)) refuse(at);
+  }
+  const std::string suffix = resolved.extension().string();
+  if (suffix != ".partial" && suffix != ".replaced" && suffix != ".lock") return;
+  const fs::path run = resolved.parent_path() / resolved.stem();
+  if (is_being_written(run)) refuse(run);
+}
 
 void SwapInto(const fs::path& fresh, const fs::path& target, bool may_exchange) {
   std::error_code error;
@@ -204,7 +230,7 @@ PartialDirectory::Parents::~Parents() {
 }
 
 PartialDirectory::PartialDirectory(const fs::path& directory)
-    : target_(Resolve(directory)),
+    : target_(ResolveOutsideRuns(directory)),
       partial_(WithSuffix(target_, ".partial")),
       replaced_(WithSuffix(target_, ".replaced")),
       parents_(target_),

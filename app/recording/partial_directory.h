@@ -12,6 +12,10 @@ namespace pregrasp {
 void SwapInto(const std::filesystem::path& fresh, const std::filesystem::path& target,
               bool may_exchange = true);
 
+/// A file or folder that may be made there: not in a run directory, finished or being written, and
+/// not one of the files beside it that say that it is being written. @throws InputError.
+void RequireOutsideRuns(const std::filesystem::path& path);
+
 /// The right to write a run directory DIR, and the folder DIR.partial in which it is written:
 /// - DIR.lock is locked (flock) for as long as this object lives, so that one process at a time
 ///   writes DIR; the kernel gives it back when a process dies. It is removed at the end.
@@ -22,8 +26,8 @@ void SwapInto(const std::filesystem::path& fresh, const std::filesystem::path& t
 /// or marked as ours.
 class PartialDirectory {
  public:
-  /// @throws InputError if DIR holds anything but a finished run, another process is writing it, or
-  /// the system refuses.
+  /// @throws InputError if DIR holds anything but a finished run, lies in another, another process
+  /// is writing it, or the system refuses.
   explicit PartialDirectory(const std::filesystem::path& directory);
   /// Without Commit, removes all that was made here.
   ~PartialDirectory();

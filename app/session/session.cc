@@ -4,6 +4,7 @@
 
 #include "app/core/error.h"
 #include "app/job/planner_settings.h"
+#include "app/recording/partial_directory.h"
 
 namespace pregrasp {
 namespace {
@@ -62,6 +63,7 @@ void Session::Shoot(const Node& node, const Shot& shot) {
 
 void Session::ShootToFile(const Node& node, const Shot& shot, const std::filesystem::path& file) {
   shot.config.Validate();
+  RequireOutsideRuns(file);
   if (config_.pictures == PictureMode::kNone) return;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   drawer_->Draw(node.facts, *timeline_, shot, file);

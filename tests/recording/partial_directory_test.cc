@@ -82,6 +82,37 @@ TEST(PartialDirectoryTest, TwoWritersOfOneRunAreRefused) {
   EXPECT_EQ(ErrorAt(run), "");
 }
 
+TEST(PartialDirectoryTest, NothingIsMadeInARunOrInItsPlace) {
+  const TemporaryFolder folder;
+  const fs::path run = folder.path() / "run", other = folder.path() / "finished";
+  WriteSampleRun(other, 2);
+  const auto refuses = [](const fs::path& path) {
+    try {
+      RequireOutsideRuns(path);
+    } catch (const InputError& error) {
+      return Contains(error.what(), "expected a place outside of run directories");
+    }
+    return false;
+  };
+  {
+    const RunDirectory first(run, SampleScene());
+    for (const char* place :
+         {"run/inner", "run/a/b/x.png", "run.partial/x", "run.partial/steps.jsonl",
+          "run.partial/frames/x.png", "run.lock", "run.replaced", "run.partial",
+          "finished/summary.json", "finished/frames/x.png", "finished/new/run"}) {
+      EXPECT_TRUE(refuses(folder.path() / place)) << place;
+    }
+    EXPECT_TRUE(Contains(ErrorAt(run / "inner"), "one in the run run"));
+    EXPECT_TRUE(Contains(ErrorAt(other / "inner"), "one in the run finished"));
+    EXPECT_FALSE(fs::exists(run));
+    for (const char* place : {"x.png", "runs/x.png", "other.lock", "run2", "run.png"}) {
+      EXPECT_FALSE(refuses(folder.path() / place)) << place;
+    }
+  }
+  EXPECT_FALSE(refuses(run / "inner"));
+  EXPECT_FALSE(VerifyManifest(other));
+}
+
 TEST(PartialDirectoryTest, ManyProcessesAtOnceLeaveOneWholeRun) {
   const TemporaryFolder folder;
   const fs::path run = folder.path() / "run";
