@@ -23,7 +23,7 @@ sanitize() {
   local failed=0
   # Debian's Simbody, MRPT and Mesa keep what they allocate at start-up: leaks are not looked for.
   ./build.sh asan-ubsan --with packages-dev.txt &&
-    ASAN_OPTIONS=detect_leaks=0 ctest --preset asan-ubsan -j "$jobs" -LE 'long|golden' "$@" || failed=1
+    PREGRASP_FUZZ_CALLS=20000 ASAN_OPTIONS=detect_leaks=0 ctest --preset asan-ubsan -j "$jobs" -LE 'long|golden' "$@" || failed=1
   ./build.sh tsan --with packages-dev.txt --target determinism_tests && ctest --preset tsan -j "$jobs" -L determinism "$@" || failed=1
   return "$failed"
 }

@@ -26,10 +26,13 @@ int CallBound(lua_State* L, int (*body)(lua_State* L, const FunctionInfo& functi
   return Protect(L, [L, body, paused]() -> int {
     const auto& function =
         *static_cast<const FunctionInfo*>(lua_touserdata(L, lua_upvalueindex(1)));
+    Machine::Of(L).RaiseIfInterrupted(L);
     std::optional<Machine::Pause> pause;
     if (paused) pause.emplace(L);
     try {
-      return body(L, function);
+      const int results = body(L, function);
+      Machine::Of(L).RaiseIfInterrupted(L);
+      return results;
     } catch (const InputError& error) {
       // Say which call it was, unless the line of the script is said already.
       if (InSameFile(error.what(), WhereInLua(L))) throw;

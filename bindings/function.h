@@ -8,33 +8,57 @@
 #include <utility>
 
 #include "app/core/error.h"
+#include "app/core/memory_claim.h"
+#include "bindings/machine.h"
 #include "bindings/schema.h"
 #include "bindings/value.h"
 
 namespace pregrasp {
 
-/// Specialised for each C++ class that Lua holds: `static const ClassInfo& info()`.
+class Session;
+
+/// Specialised for each C++ class that Lua holds: `static const ClassInfo& info()`, and `static
+/// const Session* session(const T&)`, the session that a method of the object acts on; null for
+/// none.
 template <typename T>
 struct LuaClass;
 
-/// Pushes an object that Lua shares with us; it is let go when Lua collects it.
+namespace internal {
+
+/// What the userdata of an object holds.
+template <typename T>
+struct Holder {
+  std::shared_ptr<T> object;
+  MemoryClaim claim;
+};
+
+/// What an object costs beside its own size: the control block that shares it, and malloc's share
+/// [bytes].
+inline constexpr std::size_t kSharing = 64;
+
+}  // namespace internal
+
+/// Pushes an object that Lua shares with us; it is let go when Lua collects it. What is left of it
+/// then is a closed object (CloseObject): a weak table may give it to the script once more.
 template <typename T>
 void PushObject(lua_State* L, std::shared_ptr<T> object) {
-  using Holder = std::shared_ptr<T>;
+  using Holder = internal::Holder<T>;
+  MemoryClaim claim = ClaimMemory(L, sizeof(T) + internal::kSharing);
   void* memory = lua_newuserdatauv(L, sizeof(Holder), 0);
-  new (memory) Holder(std::move(object));
   PushClassMetatable(L, LuaClass<T>::info(), [](lua_State* state) {
     static_cast<Holder*>(lua_touserdata(state, 1))->~Holder();
+    CloseObject(state, 1);
     return 0;
   });
+  new (memory) Holder{std::move(object), std::move(claim)};
   lua_setmetatable(L, -2);
 }
 
-/// The object at `index`, or null when it is something else.
+/// The object at `index`, or null when it is something else or closed.
 template <typename T>
 std::shared_ptr<T> FindObject(lua_State* L, int index) {
-  auto* holder = static_cast<std::shared_ptr<T>*>(TestClass(L, index, LuaClass<T>::info()));
-  return holder == nullptr ? nullptr : *holder;
+  auto* holder = static_cast<internal::Holder<T>*>(TestClass(L, index, LuaClass<T>::info()));
+  return holder == nullptr ? nullptr : holder->object;
 }
 
 template <typename T>
@@ -47,6 +71,10 @@ struct LuaValue<std::shared_ptr<T>> {
   }
   static void Push(lua_State* L, std::shared_ptr<T> object) { PushObject(L, std::move(object)); }
 };
+
+/// @throws InputError while the session's break_when function is asked: everything stands still
+/// then.
+void RequireNotAsking(lua_State* L, const Session* session);
 
 /// What a bound function returns that pushed its results itself.
 struct Pushed {
@@ -100,10 +128,35 @@ struct Parameter<lua_State*> {
   static Stored Pass(Stored stored) { return stored; }
 };
 
+/// What a bound function is, and so what it may do and when.
+enum class CallKind {
+  kFunction,  ///< of a module
+  kAction,    ///< a method, refused while a break_when function of its session is asked
+  kQuery,     ///< a method that changes nothing but its result, and may be called always
+  kProperty,
+};
+
+/// The session of the object that a method is called on, if this parameter is that object.
+template <typename Stored>
+struct SessionOfSelf {
+  static const Session* Find(lua_State* /*L*/) { return nullptr; }
+};
+template <typename T>
+struct SessionOfSelf<std::shared_ptr<T>> {
+  static const Session* Find(lua_State* L) {
+    const std::shared_ptr<T> object = FindObject<T>(L, 1);
+    return object ? LuaClass<T>::session(*object) : nullptr;
+  }
+};
+
 template <typename R, typename... Args>
-int Invoke(lua_State* L, const FunctionInfo& function, bool method, R (*target)(Args...)) {
+int Invoke(lua_State* L, const FunctionInfo& function, CallKind kind, R (*target)(Args...)) {
   int index = 1;
+  const bool method = kind != CallKind::kFunction;
   const int first = method ? 2 : 1;  // the object is not counted
+  if (kind == CallKind::kAction) {
+    (RequireNotAsking(L, SessionOfSelf<typename Parameter<Args>::Stored>::Find(L)), ...);
+  }
   std::tuple<typename Parameter<Args>::Stored...> stored{
       Parameter<Args>::Read(L, index, function, first)...};
   if (lua_gettop(L) >= index) ThrowTooMany(function, lua_gettop(L) - first + 1);
@@ -124,12 +177,12 @@ int Invoke(lua_State* L, const FunctionInfo& function, bool method, R (*target)(
 /// @param paused  time within it is not the script's.
 int CallBound(lua_State* L, int (*body)(lua_State* L, const FunctionInfo& function), bool paused);
 
-template <auto kTarget, bool kMethod, bool kPaused>
+template <auto kTarget, CallKind kKind>
 int Thunk(lua_State* L) {
   const auto body = [](lua_State* state, const FunctionInfo& function) {
-    return Invoke(state, function, kMethod, kTarget);
+    return Invoke(state, function, kKind, kTarget);
   };
-  return CallBound(L, body, kPaused);
+  return CallBound(L, body, kKind != CallKind::kProperty);
 }
 
 }  // namespace internal
@@ -137,19 +190,29 @@ int Thunk(lua_State* L) {
 /// A free function of a module. Time within it is not the script's.
 template <auto kTarget>
 FunctionInfo Function(std::string name, std::string parameters = "") {
-  return {std::move(name), std::move(parameters), internal::Thunk<kTarget, false, true>};
+  return {std::move(name), std::move(parameters),
+          internal::Thunk<kTarget, internal::CallKind::kFunction>};
 }
 
-/// A method: the target's first parameter is the object, by reference.
+/// A method: the target's first parameter is the object, by reference. Refused while the
+/// break_when function of the object's session is asked.
 template <auto kTarget>
 FunctionInfo Method(std::string name, std::string parameters = "") {
-  return {std::move(name), std::move(parameters), internal::Thunk<kTarget, true, true>};
+  return {std::move(name), std::move(parameters),
+          internal::Thunk<kTarget, internal::CallKind::kAction>};
+}
+
+/// A method that may be called then too: it changes nothing that anything else sees.
+template <auto kTarget>
+FunctionInfo Query(std::string name, std::string parameters = "") {
+  return {std::move(name), std::move(parameters),
+          internal::Thunk<kTarget, internal::CallKind::kQuery>};
 }
 
 /// A value that can be read: the target takes the object only, and is quick.
 template <auto kTarget>
 FunctionInfo Property(std::string name) {
-  return {std::move(name), "", internal::Thunk<kTarget, true, false>};
+  return {std::move(name), "", internal::Thunk<kTarget, internal::CallKind::kProperty>};
 }
 
 }  // namespace pregrasp

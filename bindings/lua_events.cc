@@ -97,11 +97,12 @@ bool HasPredicate(lua_State* L, const std::shared_ptr<Session>& session) {
   return has;
 }
 
-void RequireOutsidePredicate(lua_State* L, const std::shared_ptr<Session>& session) {
+void RequireNotAsking(lua_State* L, const Session* session) {
+  if (session == nullptr) return;
   const auto& asking = ScriptContext::Of(L).asking;
-  if (std::find(asking.begin(), asking.end(), session.get()) != asking.end()) {
-    throw InputError("", "", "simulations to stand still while break_when's function is asked",
-                     "a call that moves one");
+  if (std::find(asking.begin(), asking.end(), session) != asking.end()) {
+    throw InputError("", "", "a session to stand still while its break_when function is asked",
+                     "a call that may change it");
   }
 }
 

@@ -60,7 +60,9 @@ const Timeline::Node* FindKeyframe(const LuaMotion& motion, int count) {
 }
 
 std::shared_ptr<LuaMotion> MotionOfLoop(lua_State* L) {
-  return FindObject<LuaMotion>(L, lua_upvalueindex(1));
+  auto motion = LuaValue<std::shared_ptr<LuaMotion>>::Read(L, lua_upvalueindex(1), "");
+  RequireNotAsking(L, motion->session.get());
+  return motion;
 }
 
 // The next value of a loop's counter, from 1.

@@ -117,42 +117,52 @@ const ClassInfo& FrameClass();
 template <>
 struct LuaClass<LuaGraph> {
   static const ClassInfo& info() { return GraphClass(); }
+  static const Session* session(const LuaGraph& object) { return object.session.get(); }
 };
 template <>
 struct LuaClass<LuaReason> {
   static const ClassInfo& info() { return ReasonClass(); }
+  static const Session* session(const LuaReason& /*object*/) { return nullptr; }
 };
 template <>
 struct LuaClass<LuaPaths> {
   static const ClassInfo& info() { return PathsClass(); }
+  static const Session* session(const LuaPaths& object) { return object.session.get(); }
 };
 template <>
 struct LuaClass<LuaPath> {
   static const ClassInfo& info() { return PathClass(); }
+  static const Session* session(const LuaPath& object) { return object.cursor.session.get(); }
 };
 template <>
 struct LuaClass<LuaOptimizer> {
   static const ClassInfo& info() { return OptimizerClass(); }
+  static const Session* session(const LuaOptimizer& object) { return object.session.get(); }
 };
 template <>
 struct LuaClass<LuaTrajectory> {
   static const ClassInfo& info() { return TrajectoryClass(); }
+  static const Session* session(const LuaTrajectory& object) { return object.session.get(); }
 };
 template <>
 struct LuaClass<LuaGrasps> {
   static const ClassInfo& info() { return GraspsClass(); }
+  static const Session* session(const LuaGrasps& object) { return object.session.get(); }
 };
 template <>
 struct LuaClass<LuaGrasp> {
   static const ClassInfo& info() { return GraspClass(); }
+  static const Session* session(const LuaGrasp& object) { return object.all.session.get(); }
 };
 template <>
 struct LuaClass<LuaMotion> {
   static const ClassInfo& info() { return MotionClass(); }
+  static const Session* session(const LuaMotion& object) { return object.session.get(); }
 };
 template <>
 struct LuaClass<LuaFrame> {
   static const ClassInfo& info() { return FrameClass(); }
+  static const Session* session(const LuaFrame& object) { return object.session.get(); }
 };
 
 /// graph{..} of a session.

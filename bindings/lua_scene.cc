@@ -19,10 +19,12 @@ const ClassInfo kSceneClass{"Scene", {}, {}, nullptr};
 template <>
 struct LuaClass<const LuaShape> {
   static const ClassInfo& info() { return kShapeClass; }
+  static const Session* session(const LuaShape& /*shape*/) { return nullptr; }
 };
 template <>
 struct LuaClass<const Scene> {
   static const ClassInfo& info() { return kSceneClass; }
+  static const Session* session(const Scene& /*scene*/) { return nullptr; }
 };
 
 namespace {

@@ -98,6 +98,12 @@ int FindBody(const Scene& scene, const std::string& name) {
 
 void CountMemory(lua_State* L, int kibibytes) { lua_gc(L, LUA_GCSTEP, kibibytes); }
 
+void CountMemory(lua_State* L, Session& session, int kibibytes) {
+  CountMemory(L, kibibytes);
+  Machine::Of(L).RequireMemory(L, static_cast<std::size_t>(kibibytes) << 10U);
+  session.claim().Grow(static_cast<std::size_t>(kibibytes) << 10U);
+}
+
 namespace {
 
 struct SettleOptions {
@@ -259,13 +265,13 @@ const ClassInfo& SessionClass() {
                                   Method<&SessionVerdict>("verdict"),
                                   Method<&SessionSimulate>("simulate", "options"),
                                   Method<&SessionRecord>("record", "options"),
-                                  Method<&SessionBreakWhen>("break_when", "predicate"),
+                                  Query<&SessionBreakWhen>("break_when", "predicate"),
                                   Method<&SessionShot>("shot", "options"),
                                   Method<&SessionSave>("save", "dir"),
-                                  Method<&SessionBody>("body", "name"),
-                                  Method<&SessionCloud>("cloud", "options"),
-                                  Method<&PushDistance>("distance", "point"),
-                                  Method<&SessionMesh>("mesh", "options"),
+                                  Query<&SessionBody>("body", "name"),
+                                  Query<&SessionCloud>("cloud", "options"),
+                                  Query<&PushDistance>("distance", "point"),
+                                  Query<&SessionMesh>("mesh", "options"),
                                   Method<&SessionGraph>("graph", "options"),
                               },
                               {

@@ -24,10 +24,12 @@ const ClassInfo& SimulationClass();
 template <>
 struct LuaClass<Session> {
   static const ClassInfo& info() { return SessionClass(); }
+  static const Session* session(const Session& object) { return &object; }
 };
 template <>
 struct LuaClass<LuaSimulation> {
   static const ClassInfo& info() { return SimulationClass(); }
+  static const Session* session(const LuaSimulation& object) { return object.session.get(); }
 };
 
 /// A function of the script, by its reference in the registry; LUA_NOREF for none.
@@ -46,8 +48,6 @@ void SessionBreakWhen(lua_State* L, const std::shared_ptr<Session>& session,
 
 /// Whether the session has such a function.
 bool HasPredicate(lua_State* L, const std::shared_ptr<Session>& session);
-/// @throws InputError while it is asked: simulations stand still then.
-void RequireOutsidePredicate(lua_State* L, const std::shared_ptr<Session>& session);
 /// The first of the simulation's states, from `first` on, where it says yes; none if it never does.
 std::optional<int> FindStop(lua_State* L, const std::shared_ptr<Session>& session,
                             const Simulation& simulation, int first);
@@ -74,6 +74,9 @@ int FindBody(const Scene& scene, const std::string& name);
 
 /// Tells Lua's collector of memory of ours that a new object or step holds [KiB].
 void CountMemory(lua_State* L, int kibibytes);
+/// The same for what the session holds until it ends: it counts toward the script's memory.
+/// @throws std::bad_alloc beyond the script's cap.
+void CountMemory(lua_State* L, Session& session, int kibibytes);
 
 std::vector<const Schema*> SessionSchemas();
 std::vector<const Schema*> EventSchemas();

@@ -79,16 +79,22 @@ struct LuaValue<WaitOptions> {
 
 namespace {
 
-constexpr int kBytesPerStepKib = 3;
+constexpr int kKibPerStep = 3;
+
+// Counts the physics steps that a new node of the timeline holds; one that was known holds no more.
+void CountSteps(lua_State* L, LuaSimulation& sim, std::size_t nodes_before, int states_before) {
+  if (sim.session->timeline().nodes().size() == nodes_before) return;
+  CountMemory(L, *sim.session, kKibPerStep * (sim.simulation()->num_states() - states_before));
+}
 
 // Does an action, ended where break_when says, and moves on. Tells Lua's collector what the past
 // has grown by.
 // @returns whether break_when stopped it.
 bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
-  RequireOutsidePredicate(L, sim.session);
   Timeline& timeline = sim.session->timeline();
   if (sim.traced && !timeline.GetState(*sim.node)->simulation) options["trace"] = true;
   const int before = sim.simulation()->num_states();
+  const std::size_t nodes = timeline.nodes().size();
   bool stopped = false;
   if (HasPredicate(L, sim.session)) {
     Applied applied = timeline.Try(*sim.node, verb, options);
@@ -108,7 +114,7 @@ bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
       throw;
     }
   }
-  CountMemory(L, kBytesPerStepKib * (sim.simulation()->num_states() - before));
+  CountSteps(L, sim, nodes, before);
   return stopped;
 }
 
@@ -149,7 +155,6 @@ int NumStates(const Timeline& timeline, const Timeline::Node& node) {
 // Takes physics steps back, exactly: to the action that ended there, else to one that is stopped
 // there.
 void SimBack(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
-  RequireOutsidePredicate(L, sim.session);
   Timeline& timeline = sim.session->timeline();
   const int count = NumStates(timeline, *sim.node), back = steps.value_or(1);
   if (back < 0 || back >= count) {
@@ -172,7 +177,9 @@ void SimBack(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) 
   }
   nlohmann::json options = at->command.options;
   options["stopped_after"] = count - back - begins;
+  const std::size_t nodes = timeline.nodes().size();
   sim.node = &timeline.Do(*at->parent, at->command.verb, std::move(options));
+  CountSteps(L, sim, nodes, begins);
 }
 
 Pushed SimFork(lua_State* L, LuaSimulation& sim) {
@@ -286,9 +293,9 @@ const ClassInfo& SimulationClass() {
                                   Method<&SimWait>("wait", "options"),
                                   Method<&SimStep>("step", "steps"),
                                   Method<&SimBack>("back", "steps"),
-                                  Method<&SimFork>("fork"),
+                                  Query<&SimFork>("fork"),
                                   Method<&SimShot>("shot", "options"),
-                                  Method<&SimBody>("body", "name"),
+                                  Query<&SimBody>("body", "name"),
                               },
                               {
                                   Property<&SimTime>("t"),

@@ -234,8 +234,8 @@ const ClassInfo& OptimizerClass() {
                               {
                                   Method<&OptimizerStep>("step"),
                                   Method<&OptimizerBack>("back", "steps"),
-                                  Method<&OptimizerFork>("fork", "options"),
-                                  Method<&OptimizerRollouts>("rollouts"),
+                                  Query<&OptimizerFork>("fork", "options"),
+                                  Query<&OptimizerRollouts>("rollouts"),
                                   Method<&OptimizerCertify>("certify", "options"),
                                   Method<&OptimizerShot>("shot", "options"),
                               },
@@ -258,7 +258,7 @@ const ClassInfo& TrajectoryClass() {
   static const ClassInfo info{"Trajectory",
                               {
                                   Method<&TrajectoryGrasps>("grasps", "options"),
-                                  Method<&TrajectoryBody>("body", "name"),
+                                  Query<&TrajectoryBody>("body", "name"),
                                   Method<&TrajectoryShot>("shot", "options"),
                               },
                               {

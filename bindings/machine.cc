@@ -17,6 +17,10 @@ namespace pregrasp {
 namespace {
 
 constexpr int kHookInstructions = 200;  // one string operation may take milliseconds
+// A string of this size takes longer than 200 small ones, to compare above all: while there is one,
+// the hook comes at every other instruction.
+constexpr std::size_t kLongString = 256U << 10U;
+constexpr int kHookWithLongStrings = 2;
 
 double ThreadSeconds() {
   timespec now{};
@@ -28,6 +32,29 @@ double CoarseSeconds() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC_COARSE, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Typed text that begins beyond this line is a chunk "stdin+5000", whose own lines count from
+// there: a newline for each line before it would be read again with every piece.
+constexpr int kTypedBlock = 1000;
+
+// "stdin+5000:12" as "stdin:5012".
+std::string JoinTypedLines(std::string text) {
+  const std::string mark = "stdin+";
+  for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) {
+    const std::size_t block = at + mark.size();
+    std::size_t colon = block, end = 0;
+    while (colon < text.size() && std::isdigit(static_cast<unsigned char>(text[colon]))) ++colon;
+    if (colon == block || colon - block > 9 || colon >= text.size() || text[colon] != ':') continue;
+    for (end = colon + 1; end < text.size() && end - colon < 8; ++end) {
+      if (!std::isdigit(static_cast<unsigned char>(text[end]))) break;
+    }
+    if (end == colon + 1) continue;
+    const int line = std::stoi(text.substr(block, colon - block)) +
+                     std::stoi(text.substr(colon + 1, end - colon - 1));
+    text.replace(at, end - at, "stdin:" + std::to_string(line));
+  }
+  return text;
 }
 
 // The Lua functions that are running, innermost first, at most so many.
@@ -44,7 +71,7 @@ std::vector<std::string> TraceLua(lua_State* L) {
     }
     std::string line = std::string(info.short_src) + ":" + std::to_string(info.currentline);
     if (info.name != nullptr) line += std::string(", in ") + info.name;
-    lines.push_back(std::move(line));
+    lines.push_back(JoinTypedLines(std::move(line)));
   }
   return lines;
 }
@@ -76,6 +103,7 @@ Machine::Machine(const MachineConfig& config) : config_(config) {
   config.Validate();
   L_ = lua_newstate(Allocate, this);
   if (L_ == nullptr) throw std::bad_alloc();
+  running_state_ = L_;
   *static_cast<Machine**>(lua_getextraspace(L_)) = this;
   OpenSandbox(L_);
 }
@@ -87,14 +115,14 @@ void* Machine::Allocate(void* self, void* block, std::size_t old_size, std::size
   const std::size_t old_bytes = block == nullptr ? 0 : old_size;
   if (new_size == 0) {
     machine->used_ -= old_bytes;
+    if (old_bytes > kLongString) machine->long_strings_.erase(block);
     std::free(block);
     return nullptr;
   }
   if (new_size > old_bytes) {
     // For a new block, the size that comes in is the kind of object.
     const bool string = block == nullptr && old_size == LUA_TSTRING;
-    if (machine->used_ - old_bytes + new_size > machine->config_.bytes ||
-        (string && new_size > kMaxString + 64)) {
+    if (!machine->Fits(new_size - old_bytes) || (string && new_size > kMaxString + 64)) {
       // No message handler runs for this error: remember where it began. Reading the line allocates
       // nothing in Lua.
       machine->memory_where_ = WhereInLua(machine->L_);
@@ -111,8 +139,40 @@ void* Machine::Allocate(void* self, void* block, std::size_t old_size, std::size
     }
   }
   void* result = std::realloc(block, new_size);
-  if (result != nullptr) machine->used_ += new_size - old_bytes;
+  if (result == nullptr) return nullptr;
+  machine->used_ += new_size - old_bytes;
+  if (block == nullptr && old_size == LUA_TSTRING && new_size > kLongString) {
+    machine->long_strings_.insert(result);
+    machine->WatchLongStrings();
+  }
   return result;
+}
+
+bool Machine::Fits(std::size_t bytes) const { return used_ + *outside_ + bytes <= config_.bytes; }
+
+void Machine::RequireMemory(lua_State* L, std::size_t bytes) {
+  if (!Fits(bytes)) lua_gc(L, LUA_GCCOLLECT);
+  if (!Fits(bytes)) throw std::bad_alloc();
+}
+
+MemoryClaim ClaimMemory(lua_State* L, std::size_t bytes) {
+  Machine& machine = Machine::Of(L);
+  machine.RequireMemory(L, bytes);
+  return MemoryClaim(machine.outside(), bytes);
+}
+
+// Coroutines have hooks of their own, which they begin with as those are where they are made.
+void Machine::WatchLongStrings() {
+  if (!running_ || stopped() || running_state_ == nullptr) return;
+  const int count = long_strings_.empty() ? kHookInstructions : kHookWithLongStrings;
+  if (lua_gethookcount(running_state_) == count) return;
+  lua_sethook(running_state_, OnHook, LUA_MASKCOUNT, count);
+}
+
+void Machine::RaiseIfInterrupted(lua_State* L) {
+  if (!InterruptRequested()) return;
+  if (!stopped()) Stop(L, StopReason::kInterrupt, "interrupted");
+  RaiseIfStopped(L);
 }
 
 double Machine::LuaSeconds() const {
@@ -184,6 +244,7 @@ void Machine::OnHook(lua_State* L, lua_Debug* /*activation*/) {
   if (machine.stop_reason_ == StopReason::kNone && now == last && !InterruptRequested()) return;
   last = now;
   machine.CheckTime(L);
+  machine.WatchLongStrings();
 }
 
 int Machine::HandleMessage(lua_State* L) {
@@ -210,7 +271,7 @@ std::string Machine::WithFullNames(std::string message) const {
       message.replace(at, shortened.size(), full);
     }
   }
-  return message;
+  return JoinTypedLines(std::move(message));
 }
 
 void Machine::ThrowLuaError(int status) {
@@ -255,11 +316,13 @@ void Machine::LoadTyped(const std::string& text, int line) {
     first_file_ = "stdin";
     script_folder_ = ".";
   }
-  const std::string numbered = std::string(static_cast<std::size_t>(line - 1), '\n') + text;
-  if (luaL_loadbufferx(L_, numbered.data(), numbered.size(), "=stdin", "t") != LUA_OK) {
+  const int block = (line - 1) / kTypedBlock * kTypedBlock;
+  const std::string name = block == 0 ? "=stdin" : "=stdin+" + std::to_string(block);
+  const std::string numbered = std::string(static_cast<std::size_t>(line - 1 - block), '\n') + text;
+  if (luaL_loadbufferx(L_, numbered.data(), numbered.size(), name.c_str(), "t") != LUA_OK) {
     std::string message = lua_tostring(L_, -1);
     lua_pop(L_, 1);
-    throw InputError(message);
+    throw InputError(JoinTypedLines(std::move(message)));
   }
   PushTypedEnvironment(L_);
   lua_setupvalue(L_, -2, 1);
@@ -279,7 +342,8 @@ void Machine::Call(int arguments, int results) {
   const int function = lua_gettop(L_) - arguments;
   lua_pushcfunction(L_, HandleMessage);
   lua_insert(L_, function);
-  lua_sethook(L_, OnHook, LUA_MASKCOUNT, kHookInstructions);
+  lua_sethook(L_, OnHook, LUA_MASKCOUNT,
+              long_strings_.empty() ? kHookInstructions : kHookWithLongStrings);
   start_ = ThreadSeconds();
   paused_ = 0.0;
   running_ = true;
@@ -316,7 +380,7 @@ std::string WhereInLua(lua_State* L) {
     if (info.currentline > 0) {
       const char* source =
           info.source[0] == '@' || info.source[0] == '=' ? info.source + 1 : info.short_src;
-      return std::string(source) + ":" + std::to_string(info.currentline);
+      return JoinTypedLines(std::string(source) + ":" + std::to_string(info.currentline));
     }
   }
   return "";

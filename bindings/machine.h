@@ -5,16 +5,20 @@
 #include <filesystem>
 #include <lua5.4/lua.hpp>
 #include <map>
+#include <memory>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/core/memory_claim.h"
 #include "bindings/file_access.h"
 
 namespace pregrasp {
 
 struct MachineConfig {
   double seconds = 20.0;              ///< Lua time of this thread's CPU, our own calls not counted
-  std::size_t bytes = 512ULL << 20U;  ///< cap on what Lua itself allocates
+  std::size_t bytes = 512ULL << 20U;  ///< cap on what Lua allocates and the script's objects hold
   std::uint64_t seed = 1;             ///< of math.random
   /// What raises the time limit, for the message; empty when nothing does.
   std::string time_flag = "--time";
@@ -74,6 +78,36 @@ class Machine {
   /// The words for a script that ran into the memory cap.
   std::string MemoryMessage() const;
 
+  /// Where memory of ours that the script's objects hold is counted (MemoryClaim): it counts toward
+  /// the cap like Lua's own.
+  const MemoryClaim::Meter& outside() const { return outside_; }
+  /// @throws std::bad_alloc if so many bytes more do not fit under the cap, even after a full
+  /// collection.
+  void RequireMemory(lua_State* L, std::size_t bytes);
+
+  /// Raises the error that ends the script if Ctrl-C was pressed: for our own calls, between which
+  /// a loop may run few instructions.
+  void RaiseIfInterrupted(lua_State* L);
+
+  /// While alive, `co` is the coroutine that runs.
+  class Running {
+   public:
+    explicit Running(lua_State* co)
+        : machine_(Machine::Of(co)), before_(std::exchange(machine_.running_state_, co)) {
+      machine_.WatchLongStrings();
+    }
+    ~Running() {
+      machine_.running_state_ = before_;
+      machine_.WatchLongStrings();
+    }
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+
+   private:
+    Machine& machine_;
+    lua_State* before_;
+  };
+
   /// While alive, time is not counted: our own calls may take as long as they need.
   class Pause {
    public:
@@ -103,6 +137,8 @@ class Machine {
   static void* Allocate(void* self, void* block, std::size_t old_size, std::size_t new_size);
   static void OnHook(lua_State* L, lua_Debug* activation);
   static int HandleMessage(lua_State* L);
+  bool Fits(std::size_t bytes) const;
+  void WatchLongStrings();
   double LuaSeconds() const;
   std::string TimeMessage() const;
   std::string WithFullNames(std::string message) const;
@@ -112,6 +148,9 @@ class Machine {
   FileAccess files_;
   lua_State* L_ = nullptr;
   std::size_t used_ = 0;
+  MemoryClaim::Meter outside_ = std::make_shared<std::size_t>(0);
+  std::set<const void*> long_strings_;
+  lua_State* running_state_ = nullptr;  // of the coroutine that runs
   bool running_ = false;
   StopReason stop_reason_ = StopReason::kNone;
   std::string stop_message_;
@@ -124,6 +163,9 @@ class Machine {
   std::string memory_where_;                       // of the last allocation that was refused
   std::map<std::string, std::string> full_names_;  // from the name that Lua shortened
 };
+
+/// A claim of so many bytes on the script's memory. @throws std::bad_alloc beyond its cap.
+MemoryClaim ClaimMemory(lua_State* L, std::size_t bytes);
 
 /// "file:line" of the innermost Lua function that is running, or "".
 std::string WhereInLua(lua_State* L);

@@ -29,19 +29,27 @@ int XPCall(lua_State* L) {
 int ResumeWrapped(lua_State* L) {
   lua_State* co = lua_tothread(L, lua_upvalueindex(1));
   const int arguments = lua_gettop(L);
-  if (lua_status(co) == LUA_OK && lua_gettop(co) == 0)
-    return luaL_error(L, "cannot resume dead coroutine");
   if (!lua_checkstack(co, arguments)) return luaL_error(L, "too many arguments to resume");
   lua_xmove(L, co, arguments);
   int results = 0;
-  const int status = lua_resume(co, L, arguments, &results);
+  int status = LUA_OK;
+  {
+    const Machine::Running running(co);
+    status = lua_resume(co, L, arguments, &results);
+  }
   if (status == LUA_OK || status == LUA_YIELD) {
     if (!lua_checkstack(L, results + 1)) return luaL_error(L, "too many results to resume");
     lua_xmove(co, L, results);
     return results;
   }
   Machine::Of(L).RaiseIfStopped(L);
-  lua_resetthread(co);  // runs what its variables close
+  // One that is dead, or resumes another or itself, refuses and stays as it is: its frames are in
+  // use. One that failed closes its variables.
+  const int failure = lua_status(co);
+  if (failure != LUA_OK && failure != LUA_YIELD) {
+    const Machine::Running running(co);
+    lua_resetthread(co);
+  }
   lua_xmove(co, L, 1);
   if (status != LUA_ERRMEM && lua_type(L, -1) == LUA_TSTRING) {
     luaL_where(L, 1);
@@ -62,6 +70,8 @@ int Wrap(lua_State* L) {
 
 // A chain of coroutines, each resuming the next, would else go on where the stopped one left.
 int Resume(lua_State* L) {
+  lua_State* co = lua_tothread(L, 1);
+  const Machine::Running running(co == nullptr ? L : co);
   const int results = lua_tocfunction(L, lua_upvalueindex(1))(L);
   Machine::Of(L).RaiseIfStopped(L);
   return results;

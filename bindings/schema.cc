@@ -93,6 +93,31 @@ const void* FindIdentity(lua_State* L, int index, lua_CFunction reader, int upva
   return identity;
 }
 
+const char kClosedMeta = 0;  // registry key, by address
+
+int RefuseClosed(lua_State* L) {
+  return luaL_error(L, "a closed object: Lua had let go of it already");
+}
+
+// The metatable of closed objects, made on first use.
+void MakeClosedMetatable(lua_State* L) {
+  if (lua_rawgetp(L, LUA_REGISTRYINDEX, &kClosedMeta) != LUA_TNIL) {
+    lua_pop(L, 1);
+    return;
+  }
+  lua_pop(L, 1);
+  lua_createtable(L, 0, 6);
+  for (const char* event : {"__index", "__newindex", "__call"}) {
+    lua_pushcfunction(L, RefuseClosed);
+    lua_setfield(L, -2, event);
+  }
+  lua_pushliteral(L, "closed object");
+  lua_setfield(L, -2, "__name");
+  lua_pushboolean(L, 0);
+  lua_setfield(L, -2, "__metatable");
+  lua_rawsetp(L, LUA_REGISTRYINDEX, &kClosedMeta);
+}
+
 void* Identity(const void* object) { return const_cast<void*>(object); }
 
 }  // namespace
@@ -138,9 +163,16 @@ void PushFunction(lua_State* L, const FunctionInfo& function) {
   lua_pushcclosure(L, function.call, 1);
 }
 
+void CloseObject(lua_State* L, int index) {
+  index = lua_absindex(L, index);
+  lua_rawgetp(L, LUA_REGISTRYINDEX, &kClosedMeta);
+  lua_setmetatable(L, index);
+}
+
 void PushClassMetatable(lua_State* L, const ClassInfo& info, lua_CFunction destroy) {
   if (lua_rawgetp(L, LUA_REGISTRYINDEX, &info) != LUA_TNIL) return;
   lua_pop(L, 1);
+  MakeClosedMetatable(L);
   lua_createtable(L, 0, 6);
   PushFunctions(L, info.methods);
   PushFunctions(L, info.properties);

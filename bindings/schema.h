@@ -41,6 +41,11 @@ void PushRecordTable(lua_State* L, const Schema& schema);
 /// Pushes the closure of a bound function.
 void PushFunction(lua_State* L, const FunctionInfo& function);
 
+/// Makes the userdata at `index`, whose content is gone, a closed object: reading, setting and
+/// calling anything of it is an error that says so, and it is of no class any more. For finalizers:
+/// allocates nothing.
+void CloseObject(lua_State* L, int index);
+
 /// Pushes the metatable of a class, made on first use.
 void PushClassMetatable(lua_State* L, const ClassInfo& info, lua_CFunction destroy);
 

@@ -48,7 +48,7 @@ std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields) {
       const Vector3 v = LuaValue<Vector3>::Read(L, -1, "set." + key);
       value = fmt::format("{},{},{}", v.x(), v.y(), v.z());
     } else if (lua_type(L, -1) == LUA_TSTRING) {
-      value = lua_tostring(L, -1);
+      value = LuaValue<std::string>::Read(L, -1, "set." + key);
     } else {
       value = FormatDouble(LuaValue<double>::Read(L, -1, "set." + key));
     }
@@ -119,7 +119,10 @@ std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions
       context.config.weights.empty() ? DataFolder() / "assets" / "weights" : context.config.weights;
   constexpr int kSessionKib = 2000;
   CountMemory(L, kSessionKib);
-  return std::make_shared<Session>(std::move(scene), config);
+  MemoryClaim claim = ClaimMemory(L, std::size_t{kSessionKib} << 10U);
+  auto session = std::make_shared<Session>(std::move(scene), config);
+  session->claim() = std::move(claim);
+  return session;
 }
 
 const FunctionInfo& OpenFunction() {

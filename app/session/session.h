@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/core/memory_claim.h"
 #include "app/job/timeline.h"
 #include "app/session/recorder.h"
 
@@ -67,12 +68,16 @@ class Session {
 
   bool recording() const { return recorder_ != nullptr; }
 
+  /// Counts what this holds for whoever keeps it, where that asks for it.
+  MemoryClaim& claim() { return claim_; }
+
  private:
   std::unique_ptr<Recorder> OpenRecorder(const std::filesystem::path& directory,
                                          PictureMode pictures);
   void Finish(Recorder& recorder, const std::optional<std::string>& status, const Node* node);
   void CompleteVerdict();
 
+  MemoryClaim claim_;
   SessionConfig config_;
   std::unique_ptr<Job> job_;
   std::unique_ptr<Timeline> timeline_;
