@@ -8,6 +8,7 @@
 
 #include "app/core/text.h"
 #include "bindings/protect.h"
+#include "bindings/value.h"
 
 namespace pregrasp {
 namespace {
@@ -57,7 +58,7 @@ int UnknownVariable(lua_State* L) {
 // require(name): the program's own modules, else NAME.lua in the script's folder, run once.
 int Require(lua_State* L) {
   return Protect(L, [L]() -> int {
-    const std::string name = luaL_checkstring(L, 1);
+    const std::string name = LuaValue<std::string>::Read(L, 1, "module");
     lua_settop(L, 1);
     lua_rawgetp(L, LUA_REGISTRYINDEX, &kModules);
     lua_pushvalue(L, 1);

@@ -90,7 +90,16 @@ void PushSortedKeys(lua_State* L, int index, lua_Unsigned count) {
     lua_rawseti(L, unsorted, slot);
     if (slot % 65536 == 0) machine.CheckTime(L);
   }
-  std::sort(keys.begin(), keys.end(), Before);
+  std::size_t work = 0;  // bytes compared: long texts take long
+  std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
+    constexpr std::size_t kWorkPerCheck = 1000000, kWorkOfCall = 50;
+    work += kWorkOfCall + std::min(a.text.size(), b.text.size());
+    if (work > kWorkPerCheck) {
+      work = 0;
+      machine.CheckTime(L);
+    }
+    return Before(a, b);
+  });
   machine.CheckTime(L);
   lua_createtable(L, static_cast<int>(keys.size()), 0);
   for (std::size_t i = 0; i < keys.size(); ++i) {

@@ -76,6 +76,7 @@ bool HasSpecials(std::string_view pattern) {
 }
 
 int FindOrMatch(lua_State* L, bool find) {
+  Machine::Of(L).CheckTime(L);  // called by another function of C, no hook comes between
   const std::string_view subject = ToView(L, 1);
   const std::string_view pattern = ToView(L, 2);
   const std::optional<std::size_t> start = StartPosition(L, 3, subject.size());
@@ -263,6 +264,7 @@ int Repeat(lua_State* L) {
 
 // Lua's own format, after taking the addresses out of its arguments.
 int Format(lua_State* L) {
+  Machine::Of(L).CheckTime(L);
   const std::string_view format = ToView(L, 1);
   for (std::size_t i = 0; i + 1 < format.size(); ++i) {
     if (format[i] != '%') continue;

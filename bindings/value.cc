@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "app/core/check.h"
@@ -13,6 +14,14 @@ namespace {
 [[noreturn]] void Refuse(lua_State* L, int index, const std::string& path,
                          const std::string& expected) {
   throw InputError("", path, expected, DescribeValue(L, index));
+}
+
+// A zero byte would end a message there.
+std::string WithVisibleNul(std::string text) {
+  for (std::size_t at = text.find('\0'); at != std::string::npos; at = text.find('\0', at)) {
+    text.replace(at, 1, "\\0");
+  }
+  return text;
 }
 
 }  // namespace
@@ -31,7 +40,7 @@ std::string DescribeValue(lua_State* L, int index) {
       constexpr std::size_t kMost = 40;
       std::size_t size = 0;
       const char* data = lua_tolstring(L, index, &size);
-      std::string text(data, std::min(size, kMost));
+      const std::string text = WithVisibleNul({data, std::min(size, kMost)});
       return '"' + text + (size > kMost ? "..\"" : "\"");
     }
     default: {
@@ -46,7 +55,10 @@ std::string DescribeValue(lua_State* L, int index) {
 }
 
 std::string KeyText(lua_State* L, int index) {
-  return lua_type(L, index) == LUA_TSTRING ? lua_tostring(L, index) : DescribeValue(L, index);
+  if (lua_type(L, index) != LUA_TSTRING) return DescribeValue(L, index);
+  std::size_t size = 0;
+  const char* data = lua_tolstring(L, index, &size);
+  return WithVisibleNul({data, size});
 }
 
 double LuaValue<double>::Read(lua_State* L, int index, const std::string& path) {
@@ -81,12 +93,14 @@ std::string LuaValue<std::string>::Read(lua_State* L, int index, const std::stri
   if (lua_type(L, index) != LUA_TSTRING) Refuse(L, index, path, "a text");
   std::size_t size = 0;
   const char* data = lua_tolstring(L, index, &size);
+  // What takes it as C text would see the part before it only.
+  if (std::memchr(data, 0, size) != nullptr) Refuse(L, index, path, "a text without a zero byte");
   return {data, size};
 }
 
 Finger LuaValue<Finger>::Read(lua_State* L, int index, const std::string& path) {
   if (lua_type(L, index) == LUA_TSTRING) {
-    const std::string name = lua_tostring(L, index);
+    const std::string name = KeyText(L, index);
     for (int i = 0; i < kNumFingers; ++i) {
       if (name == kFingerNames[i]) return static_cast<Finger>(i);
     }
@@ -157,7 +171,7 @@ Fields::Fields(lua_State* L, int index, const Schema& schema, std::string path, 
         lua_tointeger(L, -1) <= positional) {
       continue;
     }
-    if (lua_type(L, -1) != LUA_TSTRING || !schema.Has(lua_tostring(L, -1))) {
+    if (lua_type(L, -1) != LUA_TSTRING || !schema.Has(KeyText(L, -1))) {
       unknown.push_back(KeyText(L, -1));
     }
   }

@@ -115,6 +115,18 @@ TEST(MachineTest, NoProtectedCallSwallowsTheTimeLimit) {
            "local s = ('x'):rep(1e6); while true do local a = s .. s end",
            "while true do load('return 1')() end",
            "table.sort({3, 1, 2}, function() while true do end end)",
+           "local a, b = ('\\0'):rep(8e6) .. 'a', ('\\0'):rep(8e6) .. 'b' local t = {} for i = 1, "
+           "1000 "
+           "do t[i] = i % 2 == 0 and a or b end table.sort(t)",
+           "local a, b = ('x'):rep(15e6) .. 'a', ('x'):rep(15e6) .. 'b' while a < b do end",
+           "local a, b = ('x'):rep(15e6) .. 'a', ('x'):rep(15e6) .. 'b' "
+           "coroutine.wrap(function() while a < b do end end)()",
+           "local a, b = ('x'):rep(15e6), 'y' local t = {} for i = 1, 1e6 do t[i] = i % 2 == 0 and "
+           "a or "
+           "b end while true do pcall(table.sort, t, string.find) end",
+           "local t = {} for i = 1, 200 do t[('k'):rep(2e5) .. i] = i end while true do for _ in "
+           "pairs(t) "
+           "do end end",
            "while true do tostring(setmetatable({}, {__tostring = function() return 'x' end})) end",
        }) {
     std::string message;
@@ -241,6 +253,32 @@ TEST(MachineTest, PairsGivesEveryPairOnceInOrder) {
   EXPECT_EQ(RunLua("for a, b in pairs(setmetatable({}, {__pairs = function() return function(_, k) "
                    "if not k then return 1, 2 end end end})) do return a + b end"),
             "3");
+}
+
+TEST(MachineTest, SortingIsStableAndTakesAnyOrder) {
+  EXPECT_EQ(RunLua(R"(
+    local t = {} for i = 1, 1000 do t[i] = (i * 7919) % 1000 end
+    table.sort(t) for i = 1, 1000 do assert(t[i] == i - 1) end
+    table.sort(t, function(a, b) return a > b end) for i = 1, 1000 do assert(t[i] == 1000 - i) end
+    local pairs_ = {} for i = 1, 300 do pairs_[i] = { key = i % 3, place = i } end
+    table.sort(pairs_, function(a, b) return a.key < b.key end)
+    for i = 2, 300 do
+      local a, b = pairs_[i - 1], pairs_[i]
+      assert(a.key < b.key or (a.key == b.key and a.place < b.place))
+    end
+    local words = { "b", "a\0c", "", "a", "a\0b", "ab", "\255", "B" }
+    table.sort(words)
+    for i = 2, #words do assert(words[i - 1] < words[i]) end
+    table.sort(t, function() return true end)  -- no order at all
+    local mixed = setmetatable({}, { __lt = function(a, b) return false end })
+    table.sort({ mixed, mixed, mixed })
+    table.sort({}) table.sort({ 1 }, nil)
+    return tostring(pcall(table.sort, { 1, "x" })) .. tostring(pcall(table.sort, { 1 }, 3)))"),
+            "falsefalse");
+}
+
+TEST(MachineTest, ATextWithAZeroByteIsWholeInComparisonsAndRefusedAsAName) {
+  EXPECT_NE(LuaError("require('a\\0b')").find("a text without a zero byte"), std::string::npos);
 }
 
 TEST(MachineTest, PrintGoesToStandardOutputThroughTostring) {

@@ -1,9 +1,12 @@
 // Scripts in the real machine, one claim at a time. Scenes are built in the script.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
 
+#include "app/core/interrupt.h"
 #include "app/geometry/point_cloud.h"
 #include "bindings/script.h"
 #include "tests/bindings/lua_text.h"
@@ -360,6 +363,40 @@ TEST(SessionBindingTest, AScriptsErrorInASceneFileNamesBothLines) {
               std::string::npos)
         << message;
   }
+}
+
+TEST(SessionBindingTest, AnInterruptEndsALoopOfSlowCallsAtOnce) {
+  // Few instructions of Lua run between them: its hook would come after dozens.
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point asked;
+  std::thread interrupter([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    asked = Clock::now();
+    RequestInterrupt();
+  });
+  EXPECT_THROW(Script("local s = open() while true do s:mesh{ triangles = 40 } end"), Interrupted);
+  const double seconds = std::chrono::duration<double>(Clock::now() - asked).count();
+  interrupter.join();
+  ClearInterrupt();
+  EXPECT_LT(seconds, 0.3);
+}
+
+TEST(SessionBindingTest, ANameWithAZeroByteIsRefused) {
+  EXPECT_EQ(Script(R"(
+    local s, refused = open(), 0
+    for _, call in ipairs{
+      function() s:body("cube\0x") end, function() s:shot{ caption = "a\0b" } end,
+      function() s:shot{ overlay = { "forces\0x" } } end, function() s:simulate{ ["trace\0x"] = true } end,
+      function() s:simulate():touch{ finger = "index\0x", p_OC = {0, 0, 0} } end,
+      function() pg.scene{ name = "a\0b" } end, function() pg.box{ ["x\0"] = 1, y = 1, z = 1 } end,
+      function() pg.mesh{ "a\0.obj" } end, function() open{ set = { ["object.mass"] = "1\0" } } end,
+      function() s:save("out/a\0b") end, function() s:simulate():step("1\0") end } do
+      local ok, message = pcall(call)
+      assert(not ok and not message:find("\0", 1, true), message)
+      refused = refused + 1
+    end
+    print(refused))"),
+            "11\n");
 }
 
 TEST(SessionBindingTest, OurCallsAreNotCountedAsTheScriptsTime) {
