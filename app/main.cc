@@ -1,7 +1,16 @@
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <new>
 #include <string>
+#include <system_error>
 
 #include "app/commands/commands.h"
 #include "app/core/error.h"
@@ -22,14 +31,45 @@ int Fail(int code, const std::string& message) {
   return code;
 }
 
+// Files that are opened later must not become standard input, output or error: progress would be
+// written into them.
+void OpenStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+    if (open("/dev/null", O_RDWR) != stream) std::_Exit(kInternalError);  // the lowest that is free
+  }
+}
+
+// What was printed must have arrived: exit code 0 says so.
+int FinishOutput(int code) {
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || code != 0) return code;
+  return Fail(kInternalError, std::string("standard output: cannot be written: ") +
+                                  std::strerror(errno == 0 ? EIO : errno));
+}
+
+// "--out=" would take the next word for its value. What a script is given is the script's.
+void RequireValues(int argc, char** argv) {
+  int words = 0;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.rfind("-", 0) != 0) ++words;
+    if (words >= 2 && std::string(argv[1]) == "script") return;
+    if (word.rfind("--", 0) == 0 && word.find('=') == word.size() - 1) {
+      throw InputError("pregrasp", word.substr(0, word.size() - 1), "a value after =", "none");
+    }
+  }
+}
+
 int Run(int argc, char** argv) {
+  RequireValues(argc, argv);
   CLI::App app("Plans how a hand pushes, tilts and pulls an object until it can grasp it.",
                "pregrasp");
   app.require_subcommand(0, 1);
   app.set_help_flag("-h,--help", "This text");
   app.footer(
       "Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of "
-      "ours.");
+      "ours, or output, memory or threads that cannot be had.");
   const Subcommand command(app);
   Action action;
   AddCheck(command, action);
@@ -62,12 +102,18 @@ int Run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace pregrasp;  // NOLINT: the program's own namespace
   try {
+    OpenStandardStreams();
     InstallInterruptHandler();
-    return Run(argc, argv);
+    std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not end the work
+    return FinishOutput(Run(argc, argv));
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());
   } catch (const Interrupted& error) {
     return Fail(kInterrupted, error.what());
+  } catch (const std::system_error& error) {  // no more threads, a full disk, a lost file
+    return Fail(kInternalError, std::string("pregrasp: ") + error.what());
+  } catch (const std::bad_alloc&) {
+    return Fail(kInternalError, "pregrasp: the machine has no memory left");
   } catch (const std::exception& error) {
     return Fail(kInternalError, std::string("pregrasp: a bug of ours: ") + error.what());
   }

@@ -137,15 +137,22 @@ bool Repl::TryLoad(const std::string& text) {
 // Reads lines until they are a chunk, and leaves it on the stack; false at the end of the input.
 bool Repl::ReadPiece() {
   std::string text;
+  PieceDepth depth;
   for (;;) {
     const std::optional<std::string> line = ReadLine(text.empty());
     if (!line) {
       if (text.empty()) return false;
+      --line_;
+      const bool whole = TryLoad(text);  // or says what is wrong in it
+      ++line_;
+      if (whole) return true;
       throw InputError(fmt::format("stdin:{}: the input ends within a statement", line_ - 1));
     }
     if (!text.empty()) text += '\n';
     text += *line;
-    if (TryLoad(text)) return true;
+    // At a terminal a mistake is told at once.
+    const bool may_be_whole = depth.MayBeWhole(*line);
+    if ((editor_ || may_be_whole) && TryLoad(text)) return true;
   }
 }
 

@@ -80,6 +80,17 @@ std::vector<LuaToken> SplitLua(std::string_view text) {
   return tokens;
 }
 
+bool PieceDepth::MayBeWhole(const std::string& line) {
+  unclear_ = unclear_ || line.find("[[") != std::string::npos ||
+             line.find("[=") != std::string::npos || line.find("\\z") != std::string::npos ||
+             (!line.empty() && line.back() == '\\');
+  if (unclear_) return true;
+  for (const LuaToken& token : SplitLua(line)) {
+    if (token.kind != LuaToken::Kind::kString) depth_ += DepthChange(token.text);
+  }
+  return depth_ <= 0;
+}
+
 std::string KeepLocals(const std::string& text) {
   const std::vector<LuaToken> tokens = SplitLua(text);
   std::string kept = text;

@@ -2,8 +2,10 @@
 
 #include <cstdlib>
 #include <mutex>
+#include <string>
 
 #include "app/core/check.h"
+#include "app/core/error.h"
 
 namespace pregrasp {
 
@@ -17,6 +19,14 @@ void LoadFunctions() {
   PREGRASP_CHECK(gl.name != nullptr, "gl" #name, "is missing from Mesa's off-screen library");
   PREGRASP_GL_FUNCTIONS(PREGRASP_GL_LOAD)
 #undef PREGRASP_GL_LOAD
+}
+
+// Mesa crashes on a driver that it does not have.
+void RequireKnownDriver() {
+  const char* driver = std::getenv("GALLIUM_DRIVER");
+  const std::string name = driver == nullptr ? "" : driver;
+  if (name.empty() || name == "llvmpipe" || name == "softpipe") return;
+  throw InputError("GALLIUM_DRIVER", "", "llvmpipe or softpipe, or nothing", '"' + name + '"');
 }
 
 }  // namespace
@@ -37,6 +47,7 @@ GlContext::GlContext() {
                             OSMESA_CONTEXT_MINOR_VERSION,
                             5,
                             0};
+  RequireKnownDriver();
   context_ = OSMesaCreateContextAttribs(attributes, nullptr);
   PREGRASP_CHECK(context_ != nullptr, "OSMesa gives no OpenGL 4.5 core context");
   MakeCurrent();

@@ -4,9 +4,33 @@
 #include <charconv>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 namespace pregrasp {
+namespace {
+
+// Values that are words: CLI11 takes whatever follows an option for its value.
+template <typename Value>
+struct IsText : std::false_type {};
+template <>
+struct IsText<std::string> : std::true_type {};
+template <>
+struct IsText<std::optional<std::string>> : std::true_type {};
+template <>
+struct IsText<std::filesystem::path> : std::true_type {};
+
+CLI::Validator NoFlag() {
+  return {[](const std::string& text) {
+            if (text.empty()) return std::string("expected a value, got an empty one");
+            if (text.rfind("--", 0) != 0) return std::string();
+            return "expected a value, got the option " + text;
+          },
+          ""};
+}
+
+}  // namespace
 
 Option Option::Required() const { return Option(*option_->required()); }
 
@@ -39,7 +63,9 @@ void Subcommand::RequireCommand() const { app_->require_subcommand(1); }
 
 template <typename Value>
 Option Subcommand::Add(const std::string& name, Value& value, const std::string& text) const {
-  return Option(*app_->add_option(name, value, text));
+  CLI::Option& option = *app_->add_option(name, value, text);
+  if constexpr (IsText<Value>::value) option.check(NoFlag());
+  return Option(option);
 }
 
 Option Subcommand::AddFlag(const std::string& name, bool& value, const std::string& text) const {

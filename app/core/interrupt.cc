@@ -10,7 +10,7 @@ std::atomic<bool> interrupt_requested{false}, termination_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "the signal handler needs a lock-free flag");
 
 void HandleSignal(int signal) {
-  if (signal == SIGTERM) termination_requested = true;
+  if (signal != SIGINT) termination_requested = true;
   if (interrupt_requested.exchange(true)) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
@@ -20,8 +20,14 @@ void HandleSignal(int signal) {
 }  // namespace
 
 void InstallInterruptHandler() {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action = {};
+    // nohup: whoever started this does not want it to end with the terminal.
+    if (signal == SIGHUP && sigaction(SIGHUP, nullptr, &action) == 0 &&
+        action.sa_handler == SIG_IGN) {
+      continue;
+    }
+    action = {};
     action.sa_handler = HandleSignal;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);

@@ -11,13 +11,13 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// From now on SIGINT and SIGTERM only raise the flag that the functions below read; a second one
-/// ends the program at once.
+/// From now on SIGINT, SIGTERM and, unless it is ignored, SIGHUP only raise the flag that the
+/// functions below read; a second one ends the program at once.
 void InstallInterruptHandler();
 
 bool InterruptRequested();
 
-/// Whether one of them was SIGTERM: even a prompt that survives Ctrl-C then ends.
+/// Whether one of them was not SIGINT: even a prompt that survives Ctrl-C then ends.
 bool TerminationRequested();
 
 /// Raises the flag as Ctrl-C does, or takes it back (for a prompt that goes on, and for tests).
