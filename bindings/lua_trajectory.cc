@@ -10,7 +10,7 @@ namespace {
 
 // The cost's terms are those of app/trajectory/cost.h.
 Schema MakeCostSchema() {
-  Schema schema{"CostTerms", {"total", "stage_scores", "final_score"}};
+  Schema schema{"CostTerms", {"total", "stage_scores", "final_score", "reward"}};
   for (const CostTerm& term : CostTerms()) schema.keys.emplace_back(term.name);
   return schema;
 }
@@ -27,7 +27,8 @@ void PushCost(lua_State* L, const CostFacts& cost) {
   RecordWriter record(L, kCostTerms);
   record.Set("total", cost.total)
       .Set("stage_scores", cost.stage_scores)
-      .Set("final_score", cost.final_score);
+      .Set("final_score", cost.final_score)
+      .Set("reward", cost.reward);
   for (const CostTermFacts& term : cost.terms) record.Set(term.name.c_str(), term.value);
 }
 
@@ -101,6 +102,11 @@ std::optional<double> OptimizerBestCost(LuaOptimizer& optimizer) {
 std::optional<double> OptimizerMeanCost(LuaOptimizer& optimizer) {
   if (optimizer.facts() == nullptr) return std::nullopt;
   return optimizer.facts()->mean_cost;
+}
+// nil before the first iteration
+std::optional<double> OptimizerScoreScale(LuaOptimizer& optimizer) {
+  if (optimizer.facts() == nullptr) return std::nullopt;
+  return optimizer.facts()->score_scale;
 }
 Pushed OptimizerBest(lua_State* L, LuaOptimizer& optimizer) {
   optimizer.facts() == nullptr ? lua_pushnil(L) : PushCost(L, optimizer.facts()->best);
@@ -243,6 +249,7 @@ const ClassInfo& OptimizerClass() {
                                   Property<&OptimizerIteration>("iteration"),
                                   Property<&OptimizerBestCost>("best_cost"),
                                   Property<&OptimizerMeanCost>("mean_cost"),
+                                  Property<&OptimizerScoreScale>("score_scale"),
                                   Property<&OptimizerBest>("best"),
                                   Property<&OptimizerConverged>("converged"),
                                   Property<&OptimizerBestHistory>("best_history"),

@@ -9,7 +9,7 @@ namespace pregrasp::internal {
 namespace {
 
 CostFacts MakeCostFacts(const PlanCost& cost) {
-  CostFacts facts{cost.total, cost.stage_scores, cost.final_score, {}};
+  CostFacts facts{cost.total, cost.stage_scores, cost.final_score, cost.reward, {}};
   for (const CostTerm& term : CostTerms()) facts.terms.push_back({term.name, cost.*term.value});
   return facts;
 }
@@ -84,6 +84,7 @@ void Iterate(Application& a) {
   facts.iteration = state.iteration;
   facts.limit = mppi.config().iterations;
   facts.sigma = mppi.CalcSigma(iteration);
+  facts.score_scale = state.score_scale;
   facts.best_cost = state.best_cost;
   facts.mean_cost = state.mean_history.back();
   facts.best = MakeCostFacts(state.best);

@@ -300,6 +300,7 @@ struct CostFacts {
   double total = 0.0;
   std::vector<double> stage_scores;
   double final_score = 0.0;
+  double reward = 0.0;               ///< what these count together
   std::vector<CostTermFacts> terms;  ///< penalties, all of them
 
   template <typename Self, typename Visit>
@@ -307,6 +308,7 @@ struct CostFacts {
     visit("total", self.total);
     visit("stage_scores", self.stage_scores);
     visit("final_score", self.final_score);
+    visit("reward", self.reward);
     visit("terms", self.terms);
   }
 };
@@ -352,7 +354,8 @@ struct RolloutFacts {
 struct IterationFacts {
   int path = 0;  ///< its rank
   int iteration = 0, limit = 0;
-  double sigma = 0.0;  ///< of this iteration's noise
+  double sigma = 0.0;        ///< of this iteration's noise
+  double score_scale = 0.0;  ///< what tie-breaking terms are weighed by, on all of this path
   double best_cost = 0.0, mean_cost = 0.0;
   CostFacts best;          ///< of all iterations
   bool converged = false;  ///< it ended by patience
@@ -365,6 +368,7 @@ struct IterationFacts {
     visit("iteration", self.iteration);
     visit("limit", self.limit);
     visit("sigma", self.sigma);
+    visit("score_scale", self.score_scale);
     visit("best_cost", self.best_cost);
     visit("mean_cost", self.mean_cost);
     visit("best", self.best);

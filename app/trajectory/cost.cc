@@ -28,16 +28,31 @@ ScoredState MakeScoredState(const World& world, const WorldState& state) {
 
 std::span<const CostTerm> CostTerms() {
   static constexpr CostTerm kTerms[] = {
-      {"no_contact", &PlanCost::no_contact, &CostWeights::no_contact},
-      {"slip", &PlanCost::slip, &CostWeights::slip},
-      {"effort", &PlanCost::effort, &CostWeights::effort},
-      {"unrest", &PlanCost::unrest, &CostWeights::unrest},
-      {"speed", &PlanCost::speed, &CostWeights::speed},
-      {"tip_overlap", &PlanCost::tip_overlap, &CostWeights::tip_overlap},
-      {"tip_spacing", &PlanCost::tip_spacing, &CostWeights::tip_spacing},
-      {"fall", &PlanCost::fall, &CostWeights::fall},
+      {"no_contact", &PlanCost::no_contact, &CostWeights::no_contact, false},
+      {"slip", &PlanCost::slip, &CostWeights::slip, true},
+      {"effort", &PlanCost::effort, &CostWeights::effort, true},
+      {"unrest", &PlanCost::unrest, &CostWeights::unrest, true},
+      {"speed", &PlanCost::speed, &CostWeights::speed, true},
+      {"tip_overlap", &PlanCost::tip_overlap, &CostWeights::tip_overlap, false},
+      {"tip_spacing", &PlanCost::tip_spacing, &CostWeights::tip_spacing, false},
+      {"fall", &PlanCost::fall, &CostWeights::fall, false},
   };
   return kTerms;
+}
+
+double CalcReward(std::span<const double> stage_scores, double final_score) {
+  double reward = final_score;
+  for (const double score : stage_scores) reward += std::min(score, final_score);
+  return reward;
+}
+
+double CalcScoreScale(std::span<const double> rewards) {
+  PREGRASP_CHECK(!rewards.empty());
+  const auto count = static_cast<double>(rewards.size());
+  double mean = 0.0, variance = 0.0;
+  for (const double reward : rewards) mean += reward / count;
+  for (const double reward : rewards) variance += (reward - mean) * (reward - mean) / count;
+  return std::max(kLeastScoreScale, std::sqrt(variance));
 }
 
 std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& outcome) {
@@ -56,11 +71,13 @@ ScoredState EndToScore(const World& world, const PlanOutcome& outcome) {
 
 PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
                       std::span<const double> stage_scores, double final_score,
-                      const CostWeights& weights, double force_scale) {
+                      const CostWeights& weights, double force_scale, double score_scale) {
   PREGRASP_CHECK(stage_scores.size() == outcome.stage_starts.size(), stage_scores.size());
+  PREGRASP_CHECK(score_scale > 0.0, score_scale);
   PlanCost cost;
   cost.stage_scores.assign(stage_scores.begin(), stage_scores.end());
   cost.final_score = final_score;
+  cost.reward = CalcReward(stage_scores, final_score);
   const bool touched = outcome.contact_seconds > 0.0;
   cost.no_contact = touched ? 0.0 : weights.no_contact;
   if (touched) {
@@ -85,10 +102,11 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
     cost.unrest = 2.0 * weights.unrest;
     cost.speed = 2.0 * weights.speed;
   }
-  cost.total = -final_score;
-  for (const double score : stage_scores) cost.total -= score;
-  cost.total += cost.no_contact + cost.slip + cost.effort + cost.unrest + cost.speed +
-                cost.tip_overlap + cost.tip_spacing + cost.fall;
+  cost.total = -cost.reward;
+  for (const CostTerm& term : CostTerms()) {
+    if (term.tie_breaker) cost.*term.value *= score_scale;
+    cost.total += cost.*term.value;
+  }
   PREGRASP_CHECK(AreFinite(cost.total, cost.stage_scores, final_score), cost.total, final_score);
   return cost;
 }

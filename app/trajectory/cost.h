@@ -8,14 +8,18 @@
 
 namespace pregrasp {
 
-/// Weights of the small terms beside the paper's scores; the scores themselves have weight 1. Every
-/// term is zero for a plan that does nothing wrong, and bounded, so that none can swamp the scores.
+/// Weights of the terms beside the paper's scores; the scores themselves have weight 1. Every term
+/// is zero for a plan that does nothing wrong, and bounded. Two kinds: what a certificate refuses
+/// has its weight in the scores' own unit and outweighs what a path can gain; what is only better
+/// or worse is a tie-breaker, its weight a share of how far apart the plans' scores are. On flat
+/// objects these differ by 0.01 in all, which any absolute weight would swamp.
 struct CostWeights {
   double no_contact = 0.5;   ///< no finger ever touches: doing nothing must never look good
-  double slip = 0.25;        ///< share of the contact time at the cone's limit
-  double effort = 0.1;       ///< mean force over the largest one allowed
-  double unrest = 0.3;       ///< speed when the hold ends, v / (0.1 m/s) + w / (1 rad/s), at most 2
-  double speed = 0.8;        ///< peak speed above 0.35 m/s, in m/s, at most 2
+  double slip = 0.25;        ///< tie-breaker: share of the contact time at the cone's limit
+  double effort = 0.1;       ///< tie-breaker: mean force over the largest one allowed
+  double unrest = 0.3;       ///< tie-breaker: speed when the hold ends, v / (0.1 m/s) + w / (1
+                             ///< rad/s), at most 2
+  double speed = 0.8;        ///< tie-breaker: peak speed above 0.35 m/s, in m/s, at most 2
   double tip_overlap = 1.0;  ///< a fingertip in the surroundings: such a plan is never certified;
                              ///< half of it at once, the rest by the share of the time
   double tip_spacing = 1.0;  ///< deepest overlap of the two tips' spheres over a finger's radius,
@@ -23,10 +27,11 @@ struct CostWeights {
   double fall = 1.5;         ///< the object fell out of the scene, or the simulation diverged
 };
 
-/// A plan's cost by its terms [dimensionless]; `total` = -(sum of scores) + penalties.
+/// A plan's cost by its terms [dimensionless]; `total` = -`reward` + the others.
 struct PlanCost {
   std::vector<double> stage_scores;  ///< at the start of each stage (paper, the objective)
   double final_score = 0.0;          ///< how graspable the object is after the hold
+  double reward = 0.0;               ///< CalcReward of these
   double no_contact = 0.0, slip = 0.0, effort = 0.0, unrest = 0.0, speed = 0.0;
   double tip_overlap = 0.0, tip_spacing = 0.0, fall = 0.0;
   double total = 0.0;
@@ -38,8 +43,18 @@ struct CostTerm {
   const char* name;
   double PlanCost::*value;
   double CostWeights::*weight;
+  bool tie_breaker;  ///< weighed by the scale of the path's scores
 };
 std::span<const CostTerm> CostTerms();
+
+/// What a plan is after: the paper's sum of scores at the stages' starts and at the end, but a
+/// start counts at most as much as the end. A plan that swings the object up and drops it is worth
+/// what it leaves.
+double CalcReward(std::span<const double> stage_scores, double final_score);
+
+/// How far apart rewards are: their standard deviation, at least kLeastScoreScale.
+double CalcScoreScale(std::span<const double> rewards);
+inline constexpr double kLeastScoreScale = 1e-3;  ///< below this the network's noise is larger
 
 /// The states whose scores the cost of `outcome` needs: each stage's start.
 std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& outcome);
@@ -50,8 +65,10 @@ ScoredState EndToScore(const World& world, const PlanOutcome& outcome);
 
 /// The cost of a plan from its outcome, the scores of StatesToScore, in order, and how graspable
 /// the object is at the end.
+/// @param force_scale  the largest force that a plan may ask for [N].
+/// @param score_scale  what the tie-breakers are weighed by: CalcScoreScale of the path.
 PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
                       std::span<const double> stage_scores, double final_score,
-                      const CostWeights& weights, double force_scale);
+                      const CostWeights& weights, double force_scale, double score_scale);
 
 }  // namespace pregrasp

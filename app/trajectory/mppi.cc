@@ -75,15 +75,24 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
   PREGRASP_CHECK(scores.size() == states.size(), scores.size(), states.size());
   const std::vector<double> final_scores = problem_.scorer->ScoreGraspable(ends);
 
+  const auto stage_scores = [&](int i) {
+    return std::span(scores).subspan(first[i], first[i + 1] - first[i]);
+  };
+  if (state.iteration == 0) {
+    std::vector<double> rewards;
+    for (int i = 0; i < count; ++i) {
+      rewards.push_back(CalcReward(stage_scores(i), final_scores[i]));
+    }
+    state.score_scale = CalcScoreScale(rewards);
+  }
   const double force_scale = range_.max_depth * problem_.world->scene().fingertips.stiffness;
   state.samples.assign(count, {});
   double mean_cost = 0.0;
   for (int i = 0; i < count; ++i) {
     MppiSample& sample = state.samples[i];
     sample.action = actions[i];
-    sample.cost = CalcPlanCost(*problem_.world, outcomes[i],
-                               std::span(scores).subspan(first[i], first[i + 1] - first[i]),
-                               final_scores[i], config_.weights, force_scale);
+    sample.cost = CalcPlanCost(*problem_.world, outcomes[i], stage_scores(i), final_scores[i],
+                               config_.weights, force_scale, state.score_scale);
     sample.X_WO_end = outcomes[i].end.bodies.front().X_WB();
     PREGRASP_CHECK(AreFinite(sample.cost.total, sample.X_WO_end), i, sample.cost.total);
     mean_cost += sample.cost.total / count;
@@ -100,7 +109,8 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
   const int patience = config_.patience;
   const bool stalled =
       state.iteration > patience &&
-      state.best_history[state.iteration - 1 - patience] - state.best_cost < config_.progress;
+      state.best_history[state.iteration - 1 - patience] - state.best_cost <
+          config_.progress * state.score_scale;
   state.end = stalled                                 ? MppiEnd::kPatience
               : state.iteration >= config_.iterations ? MppiEnd::kLimit
                                                       : MppiEnd::kNone;
@@ -112,16 +122,17 @@ const char* MppiEndName(MppiEnd end) {
 }
 
 void Mppi::MoveMean(MppiState& state) const {
-  const int count = static_cast<int>(state.samples.size());
-  double mean = 0.0, lowest = std::numeric_limits<double>::infinity();
-  for (const MppiSample& sample : state.samples) {
-    mean += sample.cost.total / count;
-    lowest = std::min(lowest, sample.cost.total);
-  }
-  double variance = 0.0;
-  for (const MppiSample& sample : state.samples) {
-    variance += (sample.cost.total - mean) * (sample.cost.total - mean) / count;
-  }
+  // Of the better half: what a certificate refuses costs so much that a few such plans would set
+  // the spread of all, and make the others alike.
+  std::vector<double> costs;
+  for (const MppiSample& sample : state.samples) costs.push_back(sample.cost.total);
+  std::sort(costs.begin(), costs.end());
+  const double lowest = costs.front();
+  costs.resize((costs.size() + 1) / 2);
+  const auto count = static_cast<double>(costs.size());
+  double mean = 0.0, variance = 0.0;
+  for (const double cost : costs) mean += cost / count;
+  for (const double cost : costs) variance += (cost - mean) * (cost - mean) / count;
   const double lambda = config_.temperature * std::max(std::sqrt(variance), 1e-9);
   double sum = 0.0;
   for (MppiSample& sample : state.samples) {

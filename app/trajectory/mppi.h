@@ -18,10 +18,11 @@ struct MppiConfig {
   double sigma = 1.2;   ///< standard deviation of the noise in the first iteration, so wide that
                         ///< squashing by tanh reaches the ends of each range
   double final_sigma = 0.3;  ///< and in the last; geometric in between
-  double temperature = 0.3;  ///< lambda over the standard deviation of the costs
+  double temperature = 0.5;  ///< lambda over the standard deviation of the better half's costs
   int patience = 7;          ///< iterations without progress after which it has ended; with 4,
                              ///< half of the paths ended before they had found anything
-  double progress = 0.01;    ///< what counts as progress: the best cost falls by this much
+  double progress = 0.1;     ///< what counts as progress: the best cost falls by this share of
+                             ///< the path's score scale
   double max_travel = 0.03;  ///< range of a target's own movement in a knot, each axis [m]
   PlanTiming timing;
   CostWeights weights;
@@ -49,6 +50,9 @@ const char* MppiEndName(MppiEnd end);
 /// go back, keep a copy; to fork, step a copy with another Mppi.
 struct MppiState {
   int iteration = 0;  ///< iterations done
+  /// CalcScoreScale of the first iteration's plans, and from then on the same: so that costs of
+  /// different iterations compare. 0 before.
+  double score_scale = 0.0;
   std::vector<double> mean;
   std::vector<double> best_action;  ///< of all iterations
   PlanCost best;

@@ -417,18 +417,18 @@ function Path:optimize(options) end
 ---@field iterations? integer iterations at most, 1 to 1000; 15
 ---@field sigma? number standard deviation of the noise in the first iteration, 1e-06 to 100; 1.2
 ---@field final_sigma? number of the noise in the last iteration, 1e-06 to 100; 0.3
----@field temperature? number lambda over the standard deviation of the costs, 1e-06 to 1e+06; 0.3
+---@field temperature? number lambda over the standard deviation of the better half's costs, 1e-06 to 1e+06; 0.5
 ---@field patience? integer iterations without progress after which it ends, 1 to 1000; 7
----@field progress? number what counts as progress: the best cost falls by this, 0 to 100; 0.01
+---@field progress? number what counts as progress: the best cost falls by this share of the score's spread, 0 to 100; 0.1
 ---@field max_travel? number of a target in a knot, each axis, 0 to 1 m; 0.03
 ---@field stage_seconds? number of one contact stage, 0.05 to 10 s; 0.8
 ---@field knots? integer force targets a stage; a fork keeps it, 1 to 100; 4
 ---@field hold_seconds? number the last targets are held before the last score, 0 to 30 s; 1
 ---@field no_contact? number weight: no finger ever touches, 0 to 1000; 0.5
----@field slip? number weight: share of the contact time at the cone's limit, 0 to 1000; 0.25
----@field effort? number weight: mean force over the largest one allowed, 0 to 1000; 0.1
----@field unrest? number weight: speed when the hold ends, 0 to 1000; 0.3
----@field speed? number weight: peak speed above 0.35 m/s, 0 to 1000; 0.8
+---@field slip? number tie-breaker, over the score's spread: share of the contact time at the cone's limit, 0 to 1000; 0.25
+---@field effort? number tie-breaker: mean force over the largest one allowed, 0 to 1000; 0.1
+---@field unrest? number tie-breaker: speed when the hold ends, 0 to 1000; 0.3
+---@field speed? number tie-breaker: peak speed above 0.35 m/s, 0 to 1000; 0.8
 ---@field tip_overlap? number weight: a fingertip in the surroundings, half at once, half by the share of the time, 0 to 1000; 1
 ---@field tip_spacing? number weight: the two tips overlap, by the share of a fingertip's radius, 0 to 1000; 1
 ---@field fall? number weight: the object fell out of the scene, 0 to 1000; 1.5
@@ -446,6 +446,7 @@ function Path:shot(options) end
 ---@field iteration integer iterations done
 ---@field best_cost number? of all iterations; nil before the first
 ---@field mean_cost number? of the last iteration's rollouts
+---@field score_scale number? how far the first iteration's scores are apart: what tie-breaking terms are weighed by
 ---@field best CostTerms of the best plan so far
 ---@field converged boolean it ended for want of progress, not at the limit of iterations
 ---@field best_history number[] best_cost after each iteration
@@ -486,11 +487,12 @@ function Optimizer:certify(options) end
 ---@param options? ShotOptions
 function Optimizer:shot(options) end
 
----A plan's cost: minus its scores, plus penalties that are zero for a plan that does nothing wrong.
+---A plan's cost: minus its reward, plus penalties that are zero for a plan that does nothing wrong.
 ---@class CostTerms
 ---@field total number
 ---@field stage_scores number[] at the start of each stage
 ---@field final_score number how graspable the object is after the hold
+---@field reward number the sum of these, a stage's start counting at most as much as the end
 ---@field no_contact number
 ---@field slip number
 ---@field effort number

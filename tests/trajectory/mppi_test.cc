@@ -138,7 +138,7 @@ TEST(MppiTest, APlanWithoutContactIsTheWorstKindOfRest) {
   const auto scores = ruler.scorer.Score(states);
   const std::vector<ScoredState> end = {EndToScore(ruler.world, outcome)};
   const PlanCost cost = CalcPlanCost(ruler.world, outcome, scores,
-                                     ruler.scorer.ScoreGraspable(end)[0], CostWeights(), 0.7);
+                                     ruler.scorer.ScoreGraspable(end)[0], CostWeights(), 0.7, 0.1);
   EXPECT_EQ(cost.no_contact, CostWeights().no_contact);
   EXPECT_NEAR(cost.total, CostWeights().no_contact, 1e-3);
 }
@@ -150,7 +150,7 @@ TEST(PlanCostTest, TheTipsOverlapCostsByItsDepthUpToAFingertipsRadius) {
   const std::vector<double> scores(StatesToScore(ruler.world, outcome).size(), 0.0);
   const auto cost_at = [&](double gap) {
     outcome.min_tip_gap = gap;
-    return CalcPlanCost(ruler.world, outcome, scores, 0.0, CostWeights(), 0.7).tip_spacing;
+    return CalcPlanCost(ruler.world, outcome, scores, 0.0, CostWeights(), 0.7, 0.1).tip_spacing;
   };
   EXPECT_EQ(cost_at(0.1), 0.0);
   EXPECT_EQ(cost_at(0.0), 0.0);
