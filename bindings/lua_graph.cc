@@ -9,9 +9,9 @@
 namespace pregrasp {
 namespace {
 
-const Schema kContactState{
-    "ContactState",
-    {"id", "thumb", "index", "s_c", "s_n", "rank_c", "rank_n", "occluded", "initial", "kept"}};
+const Schema kContactState{"ContactState",
+                           {"id", "thumb", "index", "s_c", "s_n", "rank_c", "rank_n", "occluded",
+                            "thumb_fits", "index_fits", "initial", "kept"}};
 const Schema kSibling{"Sibling", {"nodes", "score", "behind"}};
 
 constexpr int kGraphKib = 300;
@@ -62,6 +62,8 @@ void PushNode(lua_State* L, const ContactNode& node) {
       .Set("rank_c", node.rank_c)
       .Set("rank_n", node.rank_n)
       .Set("occluded", node.occluded)
+      .Set("thumb_fits", node.thumb_fits)
+      .Set("index_fits", node.index_fits)
       .Set("initial", node.initial)
       .Set("kept", node.kept);
 }
@@ -149,9 +151,11 @@ Pushed GraphPaths(lua_State* L, LuaGraph& graph, const PathsOptions& options) {
     throw InputError("", "paths", "a graph that has been pruned", "one that has not");
   }
   LuaPaths paths{{graph.session, graph.node, options.ToSettings()}};
-  const auto given = paths.settings.find("paths.stages");
-  paths.stages = given != paths.settings.end() ? given->get<int>() : graph.state()->config.stages;
-  graph.state()->paths->Count(paths.stages);  // refuses what cannot be
+  PlannerConfig config = graph.state()->config;
+  ApplySettings(paths.settings, config);
+  paths.order = config.order;
+  paths.stages = config.stages;
+  graph.state()->paths->Count(paths.order, paths.stages);  // refuses what cannot be
   PushObject(L, std::make_shared<LuaPaths>(std::move(paths)));
   CountMemory(L, 2 * kGraphKib);
   return {1};
@@ -226,7 +230,7 @@ int ReasonToString(lua_State* L) {
 
 // The path of a rank; null beyond the last one.
 std::shared_ptr<LuaPath> FindPath(const LuaPaths& paths, int rank) {
-  auto found = paths.state()->paths->Find(paths.stages, rank);
+  auto found = paths.state()->paths->Find(paths.order, paths.stages, rank);
   if (!found) return nullptr;
   return std::make_shared<LuaPath>(
       LuaPath{{paths.session, paths.node, paths.settings}, std::move(found)});
@@ -268,8 +272,11 @@ Pushed PathsItem(lua_State* L, LuaPaths& paths, int number) {
   return {1};
 }
 
-double PathsCount(LuaPaths& paths) { return paths.state()->paths->Count(paths.stages); }
+double PathsCount(LuaPaths& paths) {
+  return paths.state()->paths->Count(paths.order, paths.stages);
+}
 int PathsStages(LuaPaths& paths) { return paths.stages; }
+std::string PathsOrder(LuaPaths& paths) { return PathOrderName(paths.order); }
 
 int PathsToString(lua_State* L) {
   const auto paths = FindObject<LuaPaths>(L, 1);
@@ -288,6 +295,8 @@ void PathShot(lua_State* L, LuaPath& path, const ShotOptions& options) {
 }
 
 int PathRank(LuaPath& path) { return path.path->rank; }
+double PathValue(LuaPath& path) { return path.path->value; }
+double PathRepeats(LuaPath& path) { return path.path->repeats; }
 double PathScore(LuaPath& path) { return path.path->score; }
 std::vector<double> PathTerms(LuaPath& path) { return path.path->terms; }
 // "" before it is a step
@@ -405,6 +414,7 @@ const ClassInfo& PathsClass() {
                               {
                                   Property<&PathsCount>("count"),
                                   Property<&PathsStages>("stages"),
+                                  Property<&PathsOrder>("order"),
                               },
                               PathsToString,
                               &item};
@@ -420,6 +430,8 @@ const ClassInfo& PathClass() {
                               {
                                   Property<&PathRank>("rank"),
                                   Property<&PathScore>("score"),
+                                  Property<&PathValue>("value"),
+                                  Property<&PathRepeats>("repeats"),
                                   Property<&PathTerms>("terms"),
                                   Property<&PathNodes>("nodes"),
                                   Property<&PathSiblings>("siblings"),

@@ -44,6 +44,7 @@ struct LuaReason {
 
 /// Paths in their order, each found when it is first asked for; the cursor is at the graph.
 struct LuaPaths : Cursor {
+  PathOrder order = PathOrder::kExplore;
   int stages = 0;
   int next = 1;  ///< the rank that next() gives
 };

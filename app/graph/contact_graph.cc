@@ -15,6 +15,7 @@ namespace {
 struct TriangleSamples {
   std::vector<Placement::Contact> contacts;
   std::vector<bool> occluded;
+  bool fits = false;  // at one of these, or of kFitSamples others
 };
 
 std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& mesh, int samples,
@@ -28,6 +29,13 @@ std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& 
       const double v = rng.Uniform();
       all[t].contacts.push_back(ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape));
       all[t].occluded.push_back(context.IsOccluded(finger, all[t].contacts.back()));
+      all[t].fits = all[t].fits || !all[t].occluded.back();
+    }
+    for (int s = 0; s < kFitSamples && !all[t].fits; ++s) {
+      const double u = rng.Uniform();
+      const double v = rng.Uniform();
+      all[t].fits = !context.IsOccluded(
+          finger, ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape));
     }
   }
   return all;
@@ -100,6 +108,10 @@ class NodeSampler {
       means.push_back(Mean(scores));
     }
     return means;
+  }
+
+  bool Fits(Finger finger, int triangle) const {
+    return samples_[static_cast<int>(finger)][triangle].fits;
   }
 
   double OccludedShare(int thumb, int index) const {
@@ -178,6 +190,8 @@ void ContactGraph::Score(const SignedDistance& shape, const PlacementScorer& con
       node.s_c = (thumb_c[thumb] + index_c[index] + both_c[index]) / 3.0;
       node.s_n = (thumb_n[thumb] + index_n[index] + both_n[index]) / 3.0;
       node.occluded = sampler.OccludedShare(thumb, index);
+      node.thumb_fits = sampler.Fits(Finger::kThumb, thumb);
+      node.index_fits = sampler.Fits(Finger::kIndex, index);
       PREGRASP_CHECK(AreFinite(node.s_c, node.s_n, node.occluded), node.id);
     }
   }

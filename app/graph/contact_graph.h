@@ -35,10 +35,16 @@ struct ContactNode {
   int rank_c = 0;    ///< 1 is the best by s_c; of equal ones by s_n, then by id
   int rank_n = 0;    ///< 1 is the best by s_n; of equal ones by s_c, then by id
   double occluded =
-      0.0;               ///< share of the sampled contacts where a fingertip cannot be at the start
+      0.0;  ///< share of the sampled contacts where a fingertip cannot be at the start
+  /// Whether the finger's tip can be anywhere on its triangle with every body at its start, of
+  /// kFitSamples places there: the graph knows this from its scores on.
+  bool thumb_fits = false, index_fits = false;
   bool initial = false;  ///< in V_c: may start a path
   bool kept = false;     ///< in V
 };
+
+/// Places on a triangle at which a fingertip is tried.
+inline constexpr int kFitSamples = 32;
 
 /// What decided between nodes, or paths, of exactly equal score. Equal s_c are common: wherever the
 /// thumb's triangle is out of reach of any fingertip, all its nodes score by the index alone.

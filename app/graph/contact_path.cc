@@ -48,6 +48,10 @@ TieRule FindRule(const ContactGraph& graph, const ContactPath& a, const ContactP
 
 }  // namespace
 
+const char* PathOrderName(PathOrder order) {
+  return order == PathOrder::kPaper ? "paper" : "explore";
+}
+
 PathSearch::PathSearch(const ContactGraph& graph, int stages) : graph_(graph), stages_(stages) {
   if (graph.stage() != GraphStage::kConnected) {
     throw InputError("", "paths", "a graph that has been pruned", "one that has not");
@@ -128,7 +132,7 @@ bool PathSearch::FindTied() {
          static_cast<int>(tied_.size()) < kMostTied) {
     ContactPath path;
     path.nodes = PopBest().nodes;
-    path.score = score;
+    path.score = path.value = score;
     for (std::size_t stage = 0; stage < path.nodes.size(); ++stage) {
       path.terms.push_back(TermAt(graph_.nodes()[path.nodes[stage]], stage));
     }

@@ -7,6 +7,14 @@
 
 namespace pregrasp {
 
+/// In which order paths are tried.
+enum class PathOrder {
+  kExplore,  ///< best first among those that differ from what came before (PathExplorer)
+  kPaper,    ///< by the paper's sum of scores alone (PathSearch)
+};
+/// "explore", "paper".
+const char* PathOrderName(PathOrder order);
+
 /// A sequence of contact states, one a contact stage (paper, section "Trajectory optimization").
 struct ContactPath {
   std::vector<int> nodes;     ///< node ids, first to last
@@ -19,6 +27,11 @@ struct ContactPath {
   /// in the first stage, rank_n after it), so that its scores decide, or its number if it decides
   /// against any neighbour in the order. kNone if it is alone.
   TieRule rule = TieRule::kNone;
+  /// What PathExplorer orders by: `score` over 1 + `repeats`. In the paper's order the score
+  /// itself.
+  double value = 0.0;
+  /// How often paths before it had what it has: PathExplorer says how that is counted.
+  double repeats = 0.0;
 };
 
 /// Paths of equal score are counted up to this many.

@@ -12,7 +12,8 @@ namespace {
 constexpr int kSiblings = 5;  // told of a path
 
 NodeFacts MakeNodeFacts(const ContactNode& node) {
-  return {node.id, node.thumb, node.index, node.s_c, node.s_n, node.rank_c, node.rank_n};
+  return {node.id,     node.thumb,  node.index,      node.s_c,       node.s_n,
+          node.rank_c, node.rank_n, node.thumb_fits, node.index_fits};
 }
 
 const char* TieRuleName(TieRule rule) {
@@ -113,10 +114,12 @@ void Prune(Application& a) {
 void TakePath(Application& a) {
   Require(a.next.paths != nullptr, "a graph that has been pruned", "one that has not");
   const int rank = CommandOptions(a.command).Int("rank");
-  const auto path = a.next.paths->Find(a.next.config.stages, rank);
+  const PathOrder order = a.next.config.order;
+  const int stages = a.next.config.stages;
+  const auto path = a.next.paths->Find(order, stages, rank);
   if (!path) {
     throw InputError("", "rank",
-                     fmt::format("at most {:.0f} paths", a.next.paths->Count(a.next.config.stages)),
+                     fmt::format("at most {:.0f} paths", a.next.paths->Count(order, stages)),
                      std::to_string(rank));
   }
   a.facts.id = fmt::format("paths.rank.{}", rank);
@@ -125,7 +128,10 @@ void TakePath(Application& a) {
   for (const int id : path->nodes) facts.nodes.push_back(MakeNodeFacts(a.next.graph->nodes()[id]));
   facts.score = path->score;
   facts.terms = path->terms;
-  facts.num_paths = a.next.paths->Count(a.next.config.stages);
+  facts.order = PathOrderName(order);
+  facts.value = path->value;
+  facts.repeats = path->repeats;
+  facts.num_paths = a.next.paths->Count(order, stages);
   facts.num_tied = path->num_tied;
   facts.tie_rule = TieRuleName(path->rule);
   for (const ContactPath& sibling : FindSiblings(*a.next.graph, *path, kSiblings)) {

@@ -24,6 +24,7 @@ struct PlannerConfig {
   ContactMeshConfig mesh;
   ContactGraphConfig graph;
   int stages = 2;  ///< N, nodes in a path
+  PathOrder order = PathOrder::kExplore;
   MppiConfig mppi;
   CertifyConfig certify;
   PlacementSearchConfig placements;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <set>
+#include <type_traits>
 
 #include "app/core/error.h"
 #include "app/core/text.h"
@@ -12,7 +13,16 @@
 namespace pregrasp {
 namespace {
 
-constexpr KeyframeOrder kOrders[] = {KeyframeOrder::kReverse, KeyframeOrder::kForward};
+// The values that each kind of choice may have; what they are called.
+template <typename Choice>
+constexpr Choice kChoices[] = {};
+template <>
+constexpr KeyframeOrder kChoices<KeyframeOrder>[] = {KeyframeOrder::kReverse,
+                                                     KeyframeOrder::kForward};
+template <>
+constexpr PathOrder kChoices<PathOrder>[] = {PathOrder::kExplore, PathOrder::kPaper};
+const char* NameOf(KeyframeOrder order) { return KeyframeOrderName(order); }
+const char* NameOf(PathOrder order) { return PathOrderName(order); }
 
 std::string Show(const FieldValue& value) {
   const bool text = std::holds_alternative<std::string>(value);
@@ -49,11 +59,12 @@ bool Take(const NumberRange& /*range*/, const FieldValue& value, bool& field) {
   return flag != nullptr;
 }
 
-bool Take(const NumberRange& /*range*/, const FieldValue& value, KeyframeOrder& field) {
+template <typename Choice>
+bool Take(const NumberRange& /*range*/, const FieldValue& value, Choice& field) {
   const std::string* word = std::get_if<std::string>(&value);
-  for (const KeyframeOrder order : kOrders) {
-    if (word == nullptr || *word != KeyframeOrderName(order)) continue;
-    field = order;
+  for (const Choice choice : kChoices<Choice>) {
+    if (word == nullptr || *word != NameOf(choice)) continue;
+    field = choice;
     return true;
   }
   return false;
@@ -62,12 +73,27 @@ bool Take(const NumberRange& /*range*/, const FieldValue& value, KeyframeOrder& 
 FieldValue Value(double field) { return field; }
 FieldValue Value(int field) { return static_cast<double>(field); }
 FieldValue Value(bool field) { return field; }
-FieldValue Value(KeyframeOrder field) { return std::string(KeyframeOrderName(field)); }
+template <typename Choice>
+FieldValue Value(Choice field) {
+  return std::string(NameOf(field));
+}
 
-nlohmann::json ToJson(KeyframeOrder order) { return KeyframeOrderName(order); }
+nlohmann::json ToJson(double value) { return value; }
+nlohmann::json ToJson(int value) { return value; }
+nlohmann::json ToJson(bool value) { return value; }
+template <typename Choice>
+nlohmann::json ToJson(Choice value) {
+  return NameOf(value);
+}
+
+// The words of a choice; none for a field of another kind.
 template <typename T>
-nlohmann::json ToJson(const T& value) {
-  return value;
+std::vector<std::string> WordsOf(const T& /*field*/) {
+  std::vector<std::string> words;
+  if constexpr (std::is_enum_v<T>) {
+    for (const T choice : kChoices<T>) words.emplace_back(NameOf(choice));
+  }
+  return words;
 }
 
 FieldValue ParseValue(const std::string& text) {
@@ -101,10 +127,8 @@ std::string SettingRule::Text() const {
 bool PlannerSetting::is_number() const { return std::holds_alternative<double>(Default()); }
 
 std::vector<std::string> PlannerSetting::choices() const {
-  std::vector<std::string> words;
-  if (!std::holds_alternative<std::string>(Default())) return words;
-  for (const KeyframeOrder order : kOrders) words.emplace_back(KeyframeOrderName(order));
-  return words;
+  PlannerConfig config;
+  return VisitField(*this, config, [](const auto& field) { return WordsOf(field); });
 }
 
 std::string PlannerSetting::Values() const {

@@ -32,7 +32,7 @@ struct SettingRule {
 /// the stage's config.
 struct PlannerSetting {
   /// Where the value stands in a configuration.
-  using Field = std::variant<double*, int*, bool*, KeyframeOrder*>;
+  using Field = std::variant<double*, int*, bool*, KeyframeOrder*, PathOrder*>;
 
   std::string name;     ///< "mppi.samples"
   NumberRange range;    ///< of a number

@@ -69,7 +69,7 @@ class Runner {
 
   bool HasPath(const Node& graph, int rank) const {
     const auto state = timeline_.GetState(graph);
-    return state->paths->Find(state->config.stages, rank) != nullptr;
+    return state->paths->Find(state->config.order, state->config.stages, rank) != nullptr;
   }
 
   const Node& Try(const Node& graph, int rank) {

@@ -45,6 +45,11 @@ Settings GraphSettings() {
        FIELD(graph.top_percent),
        {}},
       {"paths.stages", Whole(1, 8), "contact states in a path", FIELD(stages), {}},
+      {"paths.order",
+       kNoNumber,
+       "explore: best first among paths that differ; paper: by the sum of scores alone",
+       FIELD(order),
+       {}},
   };
 }
 

@@ -192,6 +192,7 @@ struct NodeFacts {
   int id = 0, thumb = 0, index = 0;
   double s_c = 0.0, s_n = 0.0;
   int rank_c = 0, rank_n = 0;
+  bool thumb_fits = false, index_fits = false;  ///< a tip somewhere on its triangle, at the start
 
   template <typename Self, typename Visit>
   static void VisitFields(Self& self, Visit&& visit) {
@@ -202,6 +203,8 @@ struct NodeFacts {
     visit("s_n", self.s_n);
     visit("rank_c", self.rank_c);
     visit("rank_n", self.rank_n);
+    visit("thumb_fits", self.thumb_fits);
+    visit("index_fits", self.index_fits);
   }
 };
 
@@ -252,13 +255,16 @@ struct PruneFacts {
 
 struct PathFacts {
   int rank = 0;
+  std::string order;  ///< that it has this rank in: "explore" or "paper"
   std::vector<NodeFacts> nodes;
   double score = 0.0;
   std::vector<double> terms;  ///< its summands
+  double value = 0.0;         ///< what the order goes by, as ContactPath
+  double repeats = 0.0;       ///< how often paths before it had what it has
   double num_paths = 0.0;     ///< in all
   int num_tied = 1;           ///< with exactly this score, as ContactPath
   std::string tie_rule;       ///< what orders it among these: "", "scores" or "number"
-  /// Paths that differ in the last node only and come after this one.
+  /// Paths that differ in the last node only and come after this one in the paper's order.
   struct Sibling {
     std::vector<int> nodes;
     double score = 0.0;
@@ -274,9 +280,12 @@ struct PathFacts {
   template <typename Self, typename Visit>
   static void VisitFields(Self& self, Visit&& visit) {
     visit("rank", self.rank);
+    visit("order", self.order);
     visit("nodes", self.nodes);
     visit("score", self.score);
     visit("terms", self.terms);
+    visit("value", self.value);
+    visit("repeats", self.repeats);
     visit("num_paths", self.num_paths);
     visit("num_tied", self.num_tied);
     visit("tie_rule", self.tie_rule);

@@ -92,16 +92,21 @@ Lines Describe(const Scene& /*scene*/, const PruneFacts& facts) {
 }
 
 Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
-  Lines lines = {fmt::format("Path {}: of all paths of {} contact states the one with rank {} by "
-                             "the sum of its scores.",
-                             facts.rank, facts.nodes.size(), facts.rank),
-                 fmt::format("score\t{:.3f}", facts.score)};
+  const bool paper = facts.order == "paper";
+  Lines lines = {
+      paper ? fmt::format("Path {}: of all paths of {} contact states the one with rank {} by the "
+                          "sum of its scores.",
+                          facts.rank, facts.nodes.size(), facts.rank)
+            : fmt::format("Path {}: of all first states that a fingertip can touch, the best by "
+                          "its score over 1 + {:g}, for what paths before it have tried.",
+                          facts.rank, facts.repeats),
+      fmt::format("score\t{:.3f}", facts.score)};
   if (facts.num_tied > 1) {
-    lines[0] += fmt::format(" {}{} paths have exactly this score; {}.", facts.num_tied,
-                            facts.num_tied == kMostTied ? " or more" : "",
-                            facts.tie_rule == "scores"
-                                ? "the ranks of their states decide among them"
-                                : "the order of some is that of their states' numbers");
+    lines[0] += fmt::format(
+        " {}{} paths have exactly this {}; {}.", facts.num_tied,
+        facts.num_tied == kMostTied ? " or more" : "", paper ? "score" : "value",
+        facts.tie_rule == "scores" ? "the ranks of their states decide among them"
+                                   : "the order of some is that of their states' numbers");
   }
   for (std::size_t i = 0; i < facts.nodes.size(); ++i) {
     lines.push_back(fmt::format("stage {}\t{:.3f}, thumb {}, index {}", i + 1, facts.terms[i],
@@ -254,6 +259,11 @@ std::string DescribeReason(const NodeReason& reason) {
           "; ";
   text += by("without surroundings", node.s_n, node.rank_n, reason.threshold_n,
              TieText(reason.num_tied_n, reason.rule_n, "here"));
+  if (!node.thumb_fits && !node.index_fits) {
+    text +=
+        "; no fingertip can be on either of its triangles at the start, so that no path begins "
+        "with it in the order that explores";
+  }
   if (node.occluded > 0.0) {
     text += fmt::format("; no fingertip can be at {:.0f} % of its contacts", 100 * node.occluded);
   }

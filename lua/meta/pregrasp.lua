@@ -346,6 +346,7 @@ function Graph:paths(options) end
 
 ---@class PathsOptions
 ---@field stages? integer contact states in a path, 1 to 8; 2
+---@field order? "explore"|"paper" explore: best first among paths that differ; paper: by the sum of scores alone; explore
 
 ---Takes steps back.
 ---@param steps? integer 1
@@ -369,6 +370,8 @@ function Graph:shot(options) end
 ---@field rank_c integer 1 is the best by s_c; of equal ones by s_n, then by id
 ---@field rank_n integer 1 is the best by s_n; of equal ones by s_c, then by id
 ---@field occluded number share of its contacts where no fingertip can be
+---@field thumb_fits boolean the thumb's tip can be somewhere on its triangle at the start
+---@field index_fits boolean likewise
 ---@field initial boolean may begin a path
 ---@field kept boolean
 
@@ -387,6 +390,7 @@ function Graph:shot(options) end
 ---@class Paths
 ---@field count number how many there are
 ---@field stages integer
+---@field order "explore"|"paper"
 local Paths = {}
 
 ---The best path that next() has not given yet; nil after the last.
@@ -401,6 +405,8 @@ function Paths:top(count) end
 ---@class Path
 ---@field rank integer 1 is the best
 ---@field score number s_c of the first node and s_n of the others
+---@field value number what the order goes by: in "explore" the first node's s_c as a share of the best, over 1 + repeats; in "paper" the score
+---@field repeats number how often paths before it had what it has: each finger's triangle, half each finger's side; 0 in "paper"
 ---@field terms number[] its summands
 ---@field nodes ContactState[]
 ---@field siblings Sibling[] the best five of the paths that it beat by its last node
