@@ -10,7 +10,7 @@ namespace {
 
 // The cost's terms are those of app/trajectory/cost.h.
 Schema MakeCostSchema() {
-  Schema schema{"CostTerms", {"total", "stage_scores", "final_score", "reward"}};
+  Schema schema{"CostTerms", {"total", "stage_scores", "final_score", "room", "reward"}};
   for (const CostTerm& term : CostTerms()) schema.keys.emplace_back(term.name);
   return schema;
 }
@@ -28,6 +28,7 @@ void PushCost(lua_State* L, const CostFacts& cost) {
   record.Set("total", cost.total)
       .Set("stage_scores", cost.stage_scores)
       .Set("final_score", cost.final_score)
+      .Set("room", cost.room)
       .Set("reward", cost.reward);
   for (const CostTermFacts& term : cost.terms) record.Set(term.name.c_str(), term.value);
 }
@@ -78,10 +79,12 @@ Pushed OptimizerRollouts(lua_State* L, LuaOptimizer& optimizer) {
   return {1};
 }
 
-Pushed OptimizerCertify(lua_State* L, LuaOptimizer& optimizer, const CertifyOptions& options) {
+Pushed OptimizerCertify(lua_State* L, LuaOptimizer& optimizer, const CertifyOptions& options,
+                        const std::optional<int>& plan) {
   auto trajectory = std::make_shared<LuaTrajectory>(
       LuaTrajectory{{optimizer.session, optimizer.node, options.ToSettings()}});
-  trajectory->Do(Verb::kCertify);
+  trajectory->Do(Verb::kCertify, plan.value_or(1) == 1 ? nlohmann::json::object()
+                                                       : nlohmann::json{{"plan", *plan}});
   PushObject(L, std::move(trajectory));
   CountMemory(L, kTrajectoryKib);
   return {1};
@@ -242,7 +245,7 @@ const ClassInfo& OptimizerClass() {
                                   Method<&OptimizerBack>("back", "steps"),
                                   Query<&OptimizerFork>("fork", "options"),
                                   Query<&OptimizerRollouts>("rollouts"),
-                                  Method<&OptimizerCertify>("certify", "options"),
+                                  Method<&OptimizerCertify>("certify", "options, plan"),
                                   Method<&OptimizerShot>("shot", "options"),
                               },
                               {

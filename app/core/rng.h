@@ -51,6 +51,8 @@ enum class RngStream : std::uint8_t {
   kSecondSource,
   kGraspRefinement,
   kRefinedGraspIk,
+  kGraspRoom,
+  kGraspRoomKept,
 };
 
 /// Counter-based generator: Philox4x64-10 (Salmon et al., "Parallel random numbers: as easy as 1,

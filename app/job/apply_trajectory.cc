@@ -9,7 +9,7 @@ namespace pregrasp::internal {
 namespace {
 
 CostFacts MakeCostFacts(const PlanCost& cost) {
-  CostFacts facts{cost.total, cost.stage_scores, cost.final_score, cost.reward, {}};
+  CostFacts facts{cost.total, cost.stage_scores, cost.final_score, cost.room, cost.reward, {}};
   for (const CostTerm& term : CostTerms()) facts.terms.push_back({term.name, cost.*term.value});
   return facts;
 }
@@ -85,6 +85,9 @@ void Iterate(Application& a) {
   facts.limit = mppi.config().iterations;
   facts.sigma = mppi.CalcSigma(iteration);
   facts.score_scale = state.score_scale;
+  facts.rest_reward = state.rest_reward;
+  facts.risen = state.rose_at > 0;
+  facts.num_plans = static_cast<int>(state.plans.size());
   facts.best_cost = state.best_cost;
   facts.mean_cost = state.mean_history.back();
   facts.best = MakeCostFacts(state.best);
@@ -97,11 +100,12 @@ void Iterate(Application& a) {
   a.next.optimization = std::make_shared<const MppiState>(std::move(state));
 }
 
-CertifyFacts MakeCertifyFacts(const JobState& state, const Scene& scene) {
+CertifyFacts MakeCertifyFacts(const JobState& state, const Scene& scene, int plan) {
   const Certificate& certificate = *state.certificate;
   const ReleaseResult& release = *state.release;
   CertifyFacts facts;
   facts.path = state.path->rank;
+  facts.plan = plan;
   facts.certified = certificate.certified;
   for (const CertifyReason reason : certificate.reasons) {
     facts.reasons.emplace_back(CertifyReasonText(reason));
@@ -151,18 +155,26 @@ RobustFacts MakeRobustFacts(Application& a) {
 }
 
 void CertifyBest(Application& a) {
-  Require(a.next.optimization && a.next.optimization->iteration > 0, "at least one step()", "none");
+  Require(a.next.optimization && !a.next.optimization->plans.empty(), "at least one step()",
+          "none");
+  const std::vector<MppiPlan>& plans = a.next.optimization->plans;
+  const CommandOptions options(a.command);
+  const int plan = options.Has("plan") ? options.Int("plan") : 1;
+  if (plan < 1 || plan > std::ssize(plans)) {
+    throw InputError("", "plan", fmt::format("a whole number from 1 to {}", plans.size()),
+                     std::to_string(plan));
+  }
   a.next.ForgetTrajectory();
   const Planner planner = a.next.planner->WithConfig(a.next.config);
   auto certificate =
-      std::make_shared<const Certificate>(planner.Certify(*a.next.mppi, *a.next.optimization));
+      std::make_shared<const Certificate>(planner.Certify(*a.next.mppi, plans[plan - 1]));
   a.next.release =
       std::make_shared<const ReleaseResult>(planner.Release(*a.next.graph, *certificate));
   a.next.certificate = certificate;
   a.facts.id = fmt::format("path.{}.certify", a.next.path->rank);
   const TraceRow& last = certificate->trace.back();
   SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
-  CertifyFacts facts = MakeCertifyFacts(a.next, a.job.scene());
+  CertifyFacts facts = MakeCertifyFacts(a.next, a.job.scene(), plan);
   if (certificate->certified) facts.robust = MakeRobustFacts(a);
   a.facts.details = std::move(facts);
 }

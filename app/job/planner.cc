@@ -8,6 +8,7 @@
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
+#include "app/grasp/grasp_room.h"
 #include "app/job/planner_settings.h"
 
 namespace pregrasp {
@@ -120,6 +121,7 @@ Planner::Planner(std::shared_ptr<const World> world, WorldState start, const Pla
   scorer->SetProbes(FindProbes(scene().object().shape, config.mesh, *shape_, *scorer, seed));
   scorer_ = scorer;
   grasp_world_ = std::make_shared<const GraspWorld>(scene(), ShadowHand());
+  room_ = std::make_shared<const GraspRoom>(*grasp_world_, GraspRoomConfig{}, seed);
 }
 
 Planner::~Planner() = default;
@@ -155,15 +157,15 @@ Mppi Planner::MakeMppi(const ContactGraph& graph, const ContactPath& path,
   problem.shape = shape_.get();
   problem.graph = &graph;
   problem.scorer = scorer_.get();
+  problem.room = config.weights.room > 0.0 ? room_.get() : nullptr;
   problem.start = start_;
   problem.path = path;
   problem.seed = seed_;
   return {problem, config};
 }
 
-Certificate Planner::Certify(const Mppi& mppi, const MppiState& state) const {
-  PREGRASP_CHECK(!state.best_action.empty());
-  const PlanOutcome outcome = mppi.Simulate(state.best_action);
+Certificate Planner::Certify(const Mppi& mppi, const MppiPlan& plan) const {
+  const PlanOutcome outcome = mppi.Simulate(plan.action);
   return CertifyPlan(*world_, *half_world_, *environment_, mppi.problem().start, outcome.plan,
                      mppi.config().timing, config_.certify);
 }
@@ -193,19 +195,20 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   const std::vector<GraspContact> fixed =
       release.stays ? std::vector<GraspContact>{} : release.pressing;
   const ContactPlaces places(*grasp_world_, X_WB);
-  CompletionConfig config = config_.completion;
-  config.forces = config_.lift.forces;
-  CompletionResult completion = pregrasp::CompleteGrasps(
-      places, config, GenerateGrasps(X_WB, release, path_rank), fixed, pool_);
-  set.grasps = std::move(completion.grasps);
-  if (!completion.hopeless) {
-    GraspSearchConfig search = config_.search;
-    search.grasp.f_min = config_.completion.grasp.f_min;
-    const std::uint64_t seed = Rng(seed_, RngStream::kSecondSource, path_rank).NextU64();
-    int number = 0;
-    for (const GraspResult& found : SearchGrasps(places, search, fixed, seed, pool_).found) {
-      set.grasps.push_back(MakeSearchedGrasp(found, ++number));
-    }
+  GraspSearchConfig search = config_.search;
+  search.grasp.f_min = config_.completion.grasp.f_min;
+  const std::uint64_t seed = Rng(seed_, RngStream::kSecondSource, path_rank).NextU64();
+  const GraspSearchResult searched = SearchGrasps(places, search, fixed, seed, pool_);
+  // Where twenty thousand sets hold no grasp, refining twenty would take most of a run's time.
+  CompletionConfig completion = config_.completion;
+  completion.forces = config_.lift.forces;
+  if (search.max_sets > 0 && searched.found.empty()) completion.max_solves = 0;
+  set.grasps = pregrasp::CompleteGrasps(places, completion,
+                                        GenerateGrasps(X_WB, release, path_rank), fixed, pool_)
+                   .grasps;
+  int number = 0;
+  for (const GraspResult& found : searched.found) {
+    set.grasps.push_back(MakeSearchedGrasp(found, ++number));
   }
   const int count = static_cast<int>(set.grasps.size());
   for (int sample = 0; sample < count; ++sample) {

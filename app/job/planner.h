@@ -100,14 +100,15 @@ class Planner {
   /// The optimisation of one path; `graph` outlives it.
   Mppi MakeMppi(const ContactGraph& graph, const ContactPath& path, const MppiConfig& config) const;
 
-  /// Re-simulates the best plan through Simbody, and again at half the step.
-  Certificate Certify(const Mppi& mppi, const MppiState& state) const;
+  /// Re-simulates a plan of `state.plans` through Simbody, and again at half the step.
+  Certificate Certify(const Mppi& mppi, const MppiPlan& plan) const;
 
   /// @param graph  whose mesh says where fingers may touch.
   ReleaseResult Release(const ContactGraph& graph, const Certificate& certificate) const;
 
   /// The configured number of generated grasps on a certified trajectory, and those that a search
-  /// finds; none if there is no condition to complete.
+  /// finds; none if there is no condition to complete. Where the search finds none, the generated
+  /// ones are tested as they are and not refined.
   /// @param path_rank  keys the latent samples. @throws Interrupted.
   GraspSet CompleteGrasps(const Certificate& certificate, const ReleaseResult& release,
                           int path_rank) const;
@@ -137,6 +138,7 @@ class Planner {
   std::shared_ptr<const LearnedScorer> scorer_;
   std::shared_ptr<const CloudStructure> generator_structure_;
   std::shared_ptr<const GraspWorld> grasp_world_;
+  std::shared_ptr<const GraspRoom> room_;  // refers to grasp_world_
 };
 
 }  // namespace pregrasp

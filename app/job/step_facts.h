@@ -309,6 +309,7 @@ struct CostFacts {
   double total = 0.0;
   std::vector<double> stage_scores;
   double final_score = 0.0;
+  double room = 0.0;                 ///< for grasps at the end, as GraspRoom
   double reward = 0.0;               ///< what these count together
   std::vector<CostTermFacts> terms;  ///< penalties, all of them
 
@@ -317,6 +318,7 @@ struct CostFacts {
     visit("total", self.total);
     visit("stage_scores", self.stage_scores);
     visit("final_score", self.final_score);
+    visit("room", self.room);
     visit("reward", self.reward);
     visit("terms", self.terms);
   }
@@ -365,6 +367,9 @@ struct IterationFacts {
   int iteration = 0, limit = 0;
   double sigma = 0.0;        ///< of this iteration's noise
   double score_scale = 0.0;  ///< what tie-breaking terms are weighed by, on all of this path
+  double rest_reward = 0.0;  ///< what doing nothing is worth
+  bool risen = false;        ///< a plan was worth more than that: patience counts from then on
+  int num_plans = 0;         ///< whose ends differ, kept to choose from
   double best_cost = 0.0, mean_cost = 0.0;
   CostFacts best;          ///< of all iterations
   bool converged = false;  ///< it ended by patience
@@ -378,6 +383,9 @@ struct IterationFacts {
     visit("limit", self.limit);
     visit("sigma", self.sigma);
     visit("score_scale", self.score_scale);
+    visit("rest_reward", self.rest_reward);
+    visit("risen", self.risen);
+    visit("num_plans", self.num_plans);
     visit("best_cost", self.best_cost);
     visit("mean_cost", self.mean_cost);
     visit("best", self.best);
@@ -421,6 +429,7 @@ NeighbourFacts MakeNeighbourFacts(const NeighbourMotion& motion, const Scene& sc
 
 struct CertifyFacts {
   int path = 0;
+  int plan = 1;  ///< which of the path's plans, the best first
   bool certified = false;
   std::vector<std::string> reasons;
   double hold_seconds = 0.0;
@@ -441,6 +450,7 @@ struct CertifyFacts {
   template <typename Self, typename Visit>
   static void VisitFields(Self& self, Visit&& visit) {
     visit("path", self.path);
+    visit("plan", self.plan);
     visit("certified", self.certified);
     visit("reasons", self.reasons);
     visit("hold_seconds", self.hold_seconds);

@@ -136,6 +136,7 @@ Lines Describe(const Scene& /*scene*/, const IterationFacts& facts) {
     lines.push_back(fmt::format("score, stage {}\t{:.3f}", i + 1, facts.best.stage_scores[i]));
   }
   lines.push_back(fmt::format("score, end\t{:.3f}", facts.best.final_score));
+  lines.push_back(fmt::format("room for grasps\t{:.3f}", facts.best.room));
   for (const CostTermFacts& term : facts.best.terms) {
     if (term.value >= 5e-4) {
       lines.push_back(fmt::format("cost of {}\t{:.3f}", Words(term.name), term.value));

@@ -5,6 +5,7 @@
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
+#include "app/trajectory/certify.h"
 
 namespace pregrasp {
 namespace {
@@ -35,15 +36,33 @@ std::span<const CostTerm> CostTerms() {
       {"speed", &PlanCost::speed, &CostWeights::speed, true},
       {"tip_overlap", &PlanCost::tip_overlap, &CostWeights::tip_overlap, false},
       {"tip_spacing", &PlanCost::tip_spacing, &CostWeights::tip_spacing, false},
+      {"hold", &PlanCost::hold, &CostWeights::hold, false},
       {"fall", &PlanCost::fall, &CostWeights::fall, false},
   };
   return kTerms;
 }
 
-double CalcReward(std::span<const double> stage_scores, double final_score) {
-  double reward = final_score;
-  for (const double score : stage_scores) reward += std::min(score, final_score);
+double CalcReward(std::span<const double> stage_scores, double final_value) {
+  double reward = final_value;
+  for (const double score : stage_scores) reward += std::min(score, final_value);
   return reward;
+}
+
+double PlanCost::CalcValue() const {
+  double value = reward;
+  for (const CostTerm& term : CostTerms()) {
+    if (!term.tie_breaker) value -= this->*term.value;
+  }
+  return value;
+}
+
+std::vector<GraspContact> KeptContacts(const ScoredState& end) {
+  std::vector<GraspContact> kept;
+  for (int j = 0; j < kNumPlanningFingers; ++j) {
+    const Placement::Contact& contact = end.placement.fingers[j];
+    if (contact.on) kept.push_back({static_cast<Finger>(j), contact.p_OC, contact.nhat_O});
+  }
+  return kept;
 }
 
 double CalcScoreScale(std::span<const double> rewards) {
@@ -70,14 +89,15 @@ ScoredState EndToScore(const World& world, const PlanOutcome& outcome) {
 }
 
 PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
-                      std::span<const double> stage_scores, double final_score,
+                      std::span<const double> stage_scores, double final_score, double room,
                       const CostWeights& weights, double force_scale, double score_scale) {
   PREGRASP_CHECK(stage_scores.size() == outcome.stage_starts.size(), stage_scores.size());
   PREGRASP_CHECK(score_scale > 0.0, score_scale);
   PlanCost cost;
   cost.stage_scores.assign(stage_scores.begin(), stage_scores.end());
   cost.final_score = final_score;
-  cost.reward = CalcReward(stage_scores, final_score);
+  cost.room = room;
+  cost.reward = CalcReward(stage_scores, final_score + weights.room * room);
   const bool touched = outcome.contact_seconds > 0.0;
   cost.no_contact = touched ? 0.0 : weights.no_contact;
   if (touched) {
@@ -88,12 +108,17 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
   cost.unrest =
       weights.unrest * std::min(2.0, end.v_WB.norm() / kRestSpeed + end.w_WB.norm() / kRestTurn);
   cost.speed = weights.speed * std::clamp(outcome.max_speed - kFastSpeed, 0.0, 2.0);
-  if (outcome.tip_overlap_seconds > 0.0) {
-    const double share = std::min(1.0, outcome.tip_overlap_seconds / outcome.seconds);
-    cost.tip_overlap = weights.tip_overlap * 0.5 * (1.0 + share);
-  }
-  const double depth = std::max(0.0, -outcome.min_tip_gap);
-  cost.tip_spacing = weights.tip_spacing * std::min(1.0, depth / FingertipRadius(Finger::kIndex));
+  const auto by_radius = [](double depth) {
+    return std::clamp(depth / FingertipRadius(Finger::kIndex), 0.0, 1.0);
+  };
+  cost.tip_overlap = weights.tip_overlap * by_radius(outcome.max_tip_overlap);
+  cost.tip_spacing = weights.tip_spacing * by_radius(-outcome.min_tip_gap);
+  double shift = 0.0, turn_deg = 0.0;
+  CalcShift(outcome.hold_start, outcome.end, &shift, &turn_deg);
+  const CertifyConfig allowed;
+  const double moved =
+      std::max(shift / allowed.max_hold_shift, turn_deg / allowed.max_hold_turn_deg);
+  cost.hold = weights.hold * std::clamp(moved - 0.5, 0.0, 2.0);
   const BodyState& start = outcome.stage_starts.front().bodies.front();
   const Vector3 up = -world.scene().gravity.normalized();
   const bool fallen = outcome.diverged || up.dot(end.p_WB - start.p_WB) < -kFallDepth;
@@ -101,6 +126,7 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
   if (outcome.diverged) {  // its numbers mean nothing
     cost.unrest = 2.0 * weights.unrest;
     cost.speed = 2.0 * weights.speed;
+    cost.hold = 2.0 * weights.hold;
   }
   cost.total = -cost.reward;
   for (const CostTerm& term : CostTerms()) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/graph/placement.h"
+#include "app/grasp/grasp_world.h"
 #include "app/trajectory/simulate_plan.h"
 
 namespace pregrasp {
@@ -14,16 +15,18 @@ namespace pregrasp {
 /// or worse is a tie-breaker, its weight a share of how far apart the plans' scores are. On flat
 /// objects these differ by 0.01 in all, which any absolute weight would swamp.
 struct CostWeights {
+  double room = 1.0;         ///< of GraspRoom at the end, beside the learned score there
   double no_contact = 0.5;   ///< no finger ever touches: doing nothing must never look good
   double slip = 0.25;        ///< tie-breaker: share of the contact time at the cone's limit
   double effort = 0.1;       ///< tie-breaker: mean force over the largest one allowed
   double unrest = 0.3;       ///< tie-breaker: speed when the hold ends, v / (0.1 m/s) + w / (1
                              ///< rad/s), at most 2
   double speed = 0.8;        ///< tie-breaker: peak speed above 0.35 m/s, in m/s, at most 2
-  double tip_overlap = 1.0;  ///< a fingertip in the surroundings: such a plan is never certified;
-                             ///< half of it at once, the rest by the share of the time
-  double tip_spacing = 1.0;  ///< deepest overlap of the two tips' spheres over a finger's radius,
-                             ///< at most 1: such a plan is never certified
+  double tip_overlap = 1.0;  ///< deepest overlap of a tip's sphere with the surroundings over a
+                             ///< finger's radius, at most 1: such a plan is never certified
+  double tip_spacing = 1.0;  ///< the same of the two tips' spheres with each other
+  double hold = 1.0;         ///< the object's way in the hold over what a certificate allows, from
+                             ///< half of that on, at most 2
   double fall = 1.5;         ///< the object fell out of the scene, or the simulation diverged
 };
 
@@ -31,10 +34,14 @@ struct CostWeights {
 struct PlanCost {
   std::vector<double> stage_scores;  ///< at the start of each stage (paper, the objective)
   double final_score = 0.0;          ///< how graspable the object is after the hold
+  double room = 0.0;                 ///< GraspRoom there; 0 where none is asked
   double reward = 0.0;               ///< CalcReward of these
   double no_contact = 0.0, slip = 0.0, effort = 0.0, unrest = 0.0, speed = 0.0;
-  double tip_overlap = 0.0, tip_spacing = 0.0, fall = 0.0;
+  double tip_overlap = 0.0, tip_spacing = 0.0, hold = 0.0, fall = 0.0;
   double total = 0.0;
+
+  /// What compares plans of different paths: without the tie-breakers, whose scale is a path's own.
+  double CalcValue() const;
 };
 
 /// A penalty's name, what a plan has of it, and its weight: the one table of them, which records,
@@ -50,7 +57,8 @@ std::span<const CostTerm> CostTerms();
 /// What a plan is after: the paper's sum of scores at the stages' starts and at the end, but a
 /// start counts at most as much as the end. A plan that swings the object up and drops it is worth
 /// what it leaves.
-double CalcReward(std::span<const double> stage_scores, double final_score);
+/// @param final_value  the end's worth: its score, and its room by its weight.
+double CalcReward(std::span<const double> stage_scores, double final_value);
 
 /// How far apart rewards are: their standard deviation, at least kLeastScoreScale.
 double CalcScoreScale(std::span<const double> rewards);
@@ -63,12 +71,15 @@ std::vector<ScoredState> StatesToScore(const World& world, const PlanOutcome& ou
 /// would not without them.
 ScoredState EndToScore(const World& world, const PlanOutcome& outcome);
 
-/// The cost of a plan from its outcome, the scores of StatesToScore, in order, and how graspable
-/// the object is at the end.
+/// The contacts of `end` that must stay, as a grasp has them.
+std::vector<GraspContact> KeptContacts(const ScoredState& end);
+
+/// The cost of a plan from its outcome, the scores of StatesToScore, in order, how graspable the
+/// object is at the end, and the room for grasps there.
 /// @param force_scale  the largest force that a plan may ask for [N].
 /// @param score_scale  what the tie-breakers are weighed by: CalcScoreScale of the path.
 PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
-                      std::span<const double> stage_scores, double final_score,
+                      std::span<const double> stage_scores, double final_score, double room,
                       const CostWeights& weights, double force_scale, double score_scale);
 
 }  // namespace pregrasp

@@ -3,17 +3,35 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
+#include "app/dynamics/tip_overlap.h"
+#include "app/grasp/grasp_room.h"
+#include "app/trajectory/proposals.h"
 
 namespace pregrasp {
+namespace {
+
+TipFits MakeTipFits(const MppiProblem& problem) {
+  const EnvironmentDistance* environment = problem.environment;
+  std::vector<RigidTransform> X_WB = problem.world->GetPoses(problem.start);
+  return [environment, X_WB = std::move(X_WB)](Finger finger, const Placement::Contact& contact) {
+    const double radius = FingertipRadius(finger);
+    const Vector3 p_WTip = X_WB.front() * FingertipCentre(finger, contact.p_OC, contact.nhat_O);
+    return radius - environment->Calc(p_WTip, X_WB).phi <= kTipOverlapAllowed;
+  };
+}
+
+}  // namespace
 
 Mppi::Mppi(const MppiProblem& problem, const MppiConfig& config)
     : problem_(problem),
       config_(config),
       range_(MakeActionRange(problem.world->scene(), config.max_travel)),
-      space_(*problem.graph, problem.path.nodes, *problem.shape, range_, config.timing.knots) {
+      space_(*problem.graph, problem.path.nodes, *problem.shape, range_, config.timing.knots,
+             MakeTipFits(problem)) {
   PREGRASP_CHECK(config.samples >= 2 && config.iterations >= 1 && config.patience >= 1,
                  config.samples, config.iterations, config.patience);
   PREGRASP_CHECK(config.sigma > 0.0 && config.final_sigma > 0.0 && config.temperature > 0.0,
@@ -30,6 +48,9 @@ MppiState Mppi::Start() const {
   MppiState state;
   state.mean.assign(space_.size(), 0.0);
   state.best_cost = std::numeric_limits<double>::infinity();
+  const Judged judged = Judge({Simulate(state.mean)}, nullptr).front();
+  state.rest_reward =
+      CalcReward(judged.stage_scores, judged.final_score + config_.weights.room * judged.room);
   return state;
 }
 
@@ -40,77 +61,144 @@ PlanOutcome Mppi::Simulate(const std::vector<double>& action) const {
 
 std::vector<std::vector<double>> Mppi::SampleActions(const MppiState& state) const {
   const double sigma = CalcSigma(state.iteration);
+  const bool first = state.best_action.empty();
+  const double share = state.rose_at == 0 ? config_.proposals : 0.25 * config_.proposals;
+  const int proposals = static_cast<int>(share * config_.samples);
+  const Matrix3 R_WO = problem_.start.bodies.front().X_WB().linear();
+  const Vector3 up_W = -problem_.world->scene().gravity.normalized();
   std::vector<std::vector<double>> actions(config_.samples, state.mean);
-  for (int i = 1; i < config_.samples; ++i) {
-    if (i == 1 && !state.best_action.empty()) {
-      actions[i] = state.best_action;
+  for (int i = 0; i < config_.samples; ++i) {
+    if (!first && i < 2) {
+      if (i == 1) actions[i] = state.best_action;
       continue;
     }
-    Rng rng(problem_.seed, RngStream::kMppiNoise, problem_.path.rank, state.iteration, i);
+    Rng rng(problem_.seed, RngStream::kMppiNoise, problem_.path.rank,
+            state.screened + state.iteration, i);
+    if (i >= config_.samples - proposals) {
+      const auto kind = static_cast<Proposal>(i % kNumProposals);
+      actions[i] = DrawProposal(space_, kind, R_WO, up_W, rng);
+      continue;
+    }
     for (double& u : actions[i]) u += sigma * rng.Normal();
   }
   return actions;
+}
+
+std::vector<Mppi::Judged> Mppi::Judge(const std::vector<PlanOutcome>& outcomes,
+                                      ThreadPool* pool) const {
+  const int count = static_cast<int>(outcomes.size());
+  std::vector<ScoredState> ends(count);
+  std::vector<Judged> judged(count);
+  const auto look_at_end = [&](int i, int) {
+    ends[i] = EndToScore(*problem_.world, outcomes[i]);
+    if (problem_.room == nullptr || outcomes[i].diverged) return;
+    judged[i].room = problem_.room->Calc(ends[i].X_WB, KeptContacts(ends[i]));
+  };
+  if (pool != nullptr) pool->ParallelFor(count, look_at_end);
+  for (int i = 0; pool == nullptr && i < count; ++i) look_at_end(i, 0);
+
+  std::vector<ScoredState> states;
+  for (const PlanOutcome& outcome : outcomes) {
+    for (ScoredState& scored : StatesToScore(*problem_.world, outcome)) {
+      states.push_back(std::move(scored));
+    }
+  }
+  const std::vector<double> scores = problem_.scorer->Score(states);
+  PREGRASP_CHECK(scores.size() == states.size(), scores.size(), states.size());
+  const std::vector<double> final_scores = problem_.scorer->ScoreGraspable(ends);
+  auto next = scores.begin();
+  for (int i = 0; i < count; ++i) {
+    const auto end = next + std::ssize(outcomes[i].stage_starts);
+    judged[i].stage_scores.assign(next, end);
+    judged[i].final_score = final_scores[i];
+    next = end;
+  }
+  return judged;
+}
+
+PlanCost Mppi::CalcCost(const PlanOutcome& outcome, const Judged& judged,
+                        double score_scale) const {
+  const double force_scale = range_.max_depth * problem_.world->scene().fingertips.stiffness;
+  return CalcPlanCost(*problem_.world, outcome, judged.stage_scores, judged.final_score,
+                      judged.room, config_.weights, force_scale, score_scale);
+}
+
+void Mppi::FixScale(MppiState& state, const std::vector<Judged>& judged) const {
+  if (state.score_scale > 0.0) return;
+  std::vector<double> rewards;
+  for (const Judged& one : judged) {
+    rewards.push_back(
+        CalcReward(one.stage_scores, one.final_score + config_.weights.room * one.room));
+  }
+  state.score_scale = CalcScoreScale(rewards);
 }
 
 void Mppi::Step(MppiState& state, ThreadPool& pool) const {
   const std::vector<std::vector<double>> actions = SampleActions(state);
   const int count = static_cast<int>(actions.size());
   std::vector<PlanOutcome> outcomes(count);
-  std::vector<ScoredState> ends(count);
-  pool.ParallelFor(count, [&](int i, int) {
-    outcomes[i] = Simulate(actions[i]);
-    ends[i] = EndToScore(*problem_.world, outcomes[i]);
-  });
-
-  std::vector<ScoredState> states;
-  std::vector<std::size_t> first;  // index of each outcome's first state
-  for (const PlanOutcome& outcome : outcomes) {
-    first.push_back(states.size());
-    for (ScoredState& scored : StatesToScore(*problem_.world, outcome)) {
-      states.push_back(std::move(scored));
-    }
-  }
-  first.push_back(states.size());
-  const std::vector<double> scores = problem_.scorer->Score(states);
-  PREGRASP_CHECK(scores.size() == states.size(), scores.size(), states.size());
-  const std::vector<double> final_scores = problem_.scorer->ScoreGraspable(ends);
-
-  const auto stage_scores = [&](int i) {
-    return std::span(scores).subspan(first[i], first[i + 1] - first[i]);
-  };
-  if (state.iteration == 0) {
-    std::vector<double> rewards;
-    for (int i = 0; i < count; ++i) {
-      rewards.push_back(CalcReward(stage_scores(i), final_scores[i]));
-    }
-    state.score_scale = CalcScoreScale(rewards);
-  }
-  const double force_scale = range_.max_depth * problem_.world->scene().fingertips.stiffness;
+  pool.ParallelFor(count, [&](int i, int) { outcomes[i] = Simulate(actions[i]); });
+  const std::vector<Judged> judged = Judge(outcomes, &pool);
+  FixScale(state, judged);
   state.samples.assign(count, {});
   double mean_cost = 0.0;
   for (int i = 0; i < count; ++i) {
     MppiSample& sample = state.samples[i];
     sample.action = actions[i];
-    sample.cost = CalcPlanCost(*problem_.world, outcomes[i], stage_scores(i), final_scores[i],
-                               config_.weights, force_scale, state.score_scale);
+    sample.cost = CalcCost(outcomes[i], judged[i], state.score_scale);
     sample.X_WO_end = outcomes[i].end.bodies.front().X_WB();
     PREGRASP_CHECK(AreFinite(sample.cost.total, sample.X_WO_end), i, sample.cost.total);
     mean_cost += sample.cost.total / count;
-    if (sample.cost.total < state.best_cost) {
-      state.best_cost = sample.cost.total;
-      state.best = sample.cost;
-      state.best_action = sample.action;
-    }
+    Offer(state, sample);
   }
   MoveMean(state);
   ++state.iteration;
+  if (state.rose_at == 0 && state.best.reward > state.rest_reward + config_.rise) {
+    state.rose_at = state.iteration;
+  }
   state.best_history.push_back(state.best_cost);
   state.mean_history.push_back(mean_cost);
+  CheckEnd(state);
+}
+
+void Mppi::Screen(MppiState& state, int iterations, ThreadPool& pool) const {
+  for (int i = 0; i < iterations; ++i) Step(state, pool);
+  state.screened += state.iteration;
+  state.iteration = 0;
+  if (state.rose_at > 0) state.rose_at = 1;
+  state.best_history.clear();
+  state.mean_history.clear();
+  state.end = MppiEnd::kNone;
+}
+
+// Keeps the best of all plans whose ends differ.
+void Mppi::Offer(MppiState& state, const MppiSample& sample) {
+  const auto is_same = [&](const MppiPlan& plan) {
+    const RigidTransform &a = plan.X_WO_end, &b = sample.X_WO_end;
+    return (a.translation() - b.translation()).norm() < kSameShift &&
+           RadToDeg(RotationAngle(a.linear(), b.linear())) < kSameTurnDeg;
+  };
+  std::vector<MppiPlan>& plans = state.plans;
+  const auto better = std::find_if(plans.begin(), plans.end(), [&](const MppiPlan& plan) {
+    return is_same(plan) && plan.cost.total <= sample.cost.total;
+  });
+  if (better != plans.end()) return;
+  plans.erase(std::remove_if(plans.begin(), plans.end(), is_same), plans.end());
+  const auto place = std::find_if(plans.begin(), plans.end(), [&](const MppiPlan& plan) {
+    return sample.cost.total < plan.cost.total;
+  });
+  plans.insert(place, {sample.action, sample.cost, sample.X_WO_end});
+  if (static_cast<int>(plans.size()) > kMostPlans) plans.pop_back();
+  state.best_cost = plans.front().cost.total;
+  state.best = plans.front().cost;
+  state.best_action = plans.front().action;
+}
+
+void Mppi::CheckEnd(MppiState& state) const {
   const int patience = config_.patience;
-  const bool stalled =
-      state.iteration > patience &&
-      state.best_history[state.iteration - 1 - patience] - state.best_cost <
-          config_.progress * state.score_scale;
+  const bool stalled = state.rose_at > 0 && state.iteration - state.rose_at >= patience &&
+                       state.best_history[state.iteration - 1 - patience] - state.best_cost <
+                           config_.progress * state.score_scale;
   state.end = stalled                                 ? MppiEnd::kPatience
               : state.iteration >= config_.iterations ? MppiEnd::kLimit
                                                       : MppiEnd::kNone;

@@ -10,6 +10,8 @@
 
 namespace pregrasp {
 
+class GraspRoom;
+
 /// Model-predictive path integral optimisation of one path (Williams et al., ICRA 2017), as a
 /// one-shot optimiser.
 struct MppiConfig {
@@ -19,8 +21,12 @@ struct MppiConfig {
                         ///< squashing by tanh reaches the ends of each range
   double final_sigma = 0.3;  ///< and in the last; geometric in between
   double temperature = 0.5;  ///< lambda over the standard deviation of the better half's costs
-  int patience = 7;          ///< iterations without progress after which it has ended; with 4,
-                             ///< half of the paths ended before they had found anything
+  int patience = 5;          ///< iterations without progress after which it has ended; they count
+                             ///< from the first rise on
+  double rise = 0.02;        ///< the first rise: the best reward is above that of doing nothing by
+                             ///< this much
+  double proposals = 0.5;    ///< share of the samples that are proposals, until the first rise; a
+                             ///< quarter of that afterwards
   double progress = 0.1;     ///< what counts as progress: the best cost falls by this share of
                              ///< the path's score scale
   double max_travel = 0.03;  ///< range of a target's own movement in a knot, each axis [m]
@@ -36,6 +42,16 @@ struct MppiSample {
   RigidTransform X_WO_end = RigidTransform::Identity();
 };
 
+/// A plan to choose from.
+struct MppiPlan {
+  std::vector<double> action;
+  PlanCost cost;
+  RigidTransform X_WO_end = RigidTransform::Identity();
+};
+/// Plans whose ends are nearer than this are the same to a grasp.
+inline constexpr double kSameShift = 0.01;  // [m]
+inline constexpr double kSameTurnDeg = 10.0;
+
 /// Why an optimisation has ended.
 enum class MppiEnd {
   kNone,      ///< it has not
@@ -46,14 +62,22 @@ enum class MppiEnd {
 /// "", "patience", "limit": the word used in logs.
 const char* MppiEndName(MppiEnd end);
 
+inline constexpr int kMostPlans = 4;
+
 /// Everything that the next iteration depends on, and what the last one did: a copyable value. To
 /// go back, keep a copy; to fork, step a copy with another Mppi.
 struct MppiState {
-  int iteration = 0;  ///< iterations done
+  int iteration = 0;  ///< iterations done, not counting those that screened the path
+  int screened = 0;   ///< iterations that did
   /// CalcScoreScale of the first iteration's plans, and from then on the same: so that costs of
   /// different iterations compare. 0 before.
   double score_scale = 0.0;
+  double rest_reward = 0.0;  ///< of doing nothing: no finger on
+  int rose_at = 0;           ///< the iteration of the first rise, from 1; 0 before it
   std::vector<double> mean;
+  /// The best of all iterations whose ends differ, best first, at most kMostPlans: what may be put
+  /// to certification. plans[0] is `best`.
+  std::vector<MppiPlan> plans;
   std::vector<double> best_action;  ///< of all iterations
   PlanCost best;
   double best_cost = 0.0;            ///< best.total
@@ -72,6 +96,7 @@ struct MppiProblem {
   const SignedDistance* shape = nullptr;  ///< the object's
   const ContactGraph* graph = nullptr;
   const StateScorer* scorer = nullptr;
+  const GraspRoom* room = nullptr;  ///< may be null: the learned score alone
   WorldState start;
   ContactPath path;
   std::uint64_t seed = 1;  ///< of the run; path.rank and the iteration key the noise too
@@ -81,11 +106,16 @@ class Mppi {
  public:
   Mppi(const MppiProblem& problem, const MppiConfig& config);
 
+  /// With what doing nothing is worth.
   MppiState Start() const;
 
   /// One iteration: sample around the mean, roll out, score, weigh, move the mean. Sample 0 is the
   /// mean itself, sample 1 the best plan so far. The same bits for any number of threads.
   void Step(MppiState& state, ThreadPool& pool) const;
+
+  /// Iterations that find out what a path is worth: what comes after begins with their mean and
+  /// plans, its own iterations counted from 1.
+  void Screen(MppiState& state, int iterations, ThreadPool& pool) const;
 
   /// Decodes and simulates one action again, e.g. the winner.
   PlanOutcome Simulate(const std::vector<double>& action) const;
@@ -100,6 +130,16 @@ class Mppi {
 
  private:
   std::vector<std::vector<double>> SampleActions(const MppiState& state) const;
+  // What a plan left, scored.
+  struct Judged {
+    std::vector<double> stage_scores;
+    double final_score = 0.0, room = 0.0;
+  };
+  std::vector<Judged> Judge(const std::vector<PlanOutcome>& outcomes, ThreadPool* pool) const;
+  PlanCost CalcCost(const PlanOutcome& outcome, const Judged& judged, double score_scale) const;
+  void FixScale(MppiState& state, const std::vector<Judged>& judged) const;
+  static void Offer(MppiState& state, const MppiSample& sample);
+  void CheckEnd(MppiState& state) const;
   void MoveMean(MppiState& state) const;
 
   MppiProblem problem_;

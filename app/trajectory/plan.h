@@ -50,7 +50,9 @@ struct WorldPlan {
 struct PlanTiming {
   double stage_seconds = 0.8;  ///< of one contact stage (findings: .4 to 1.3 all work)
   int knots = 4;               ///< K, force targets a stage
-  double hold_seconds = 1.0;   ///< the last targets are held this long before the last score
+  /// The last targets are held this long before the last score: as long as a certificate does, so
+  /// that what creeps away is not found out then.
+  double hold_seconds = 1.5;
 };
 
 }  // namespace pregrasp

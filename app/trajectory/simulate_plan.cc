@@ -50,9 +50,10 @@ class PlanRunner {
   const WorldState& state() const { return state_; }
   bool diverged() const { return outcome_.diverged; }
 
-  // Puts the fingers of a stage on or off. F has on, kept and contact.
+  // Puts the fingers of a stage on or off. F has on, kept and contact. With `only_where_they_fit`,
+  // a finger whose tip does not fit where it is asked to be stays away.
   template <typename F>
-  void StartStage(const std::array<F, kNumPlanningFingers>& fingers) {
+  void StartStage(const std::array<F, kNumPlanningFingers>& fingers, bool only_where_they_fit) {
     outcome_.plan.stages.emplace_back();
     for (int j = 0; j < kNumPlanningFingers; ++j) {
       const Finger finger = static_cast<Finger>(j);
@@ -64,7 +65,10 @@ class PlanRunner {
         world_.LiftFinger(state_, finger);
       } else if (!fingers[j].kept) {
         world_.PutFinger(state_, finger, fingers[j].contact.p_OC);
+        if (only_where_they_fit && !Fits(finger)) world_.LiftFinger(state_, finger);
       }
+      used.on = state_.fingers[j].on;
+      used.kept = used.kept && used.on;
     }
     outcome_.stage_starts.push_back(state_);
   }
@@ -124,6 +128,11 @@ class PlanRunner {
     }
     KeepBooks();
     if (trace_) trace_->push_back({state_, contacts_});
+  }
+
+  bool Fits(Finger finger) const {
+    return CalcTipOverlap(state_, finger, world_.GetPoses(state_), environment_) <=
+           kTipOverlapAllowed;
   }
 
   void AddConvergence(const Convergence& convergence) {
@@ -196,7 +205,7 @@ PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environm
                          const PlanTiming& timing) {
   PlanRunner runner(world, environment, start, timing, Stepper::kKernel, nullptr);
   for (const auto& stage : plan.stages) {
-    runner.StartStage(stage);
+    runner.StartStage(stage, true);
     for (int k = 0; k < timing.knots && !runner.diverged(); ++k) {
       const WorldState& state = runner.state();
       const RigidTransform X_WO = state.bodies.front().X_WB();
@@ -219,7 +228,7 @@ PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environm
                          Stepper stepper, std::vector<TraceRow>* trace) {
   PlanRunner runner(world, environment, start, timing, stepper, trace);
   for (const auto& stage : plan.stages) {
-    runner.StartStage(stage);
+    runner.StartStage(stage, false);
     for (int k = 0; k < timing.knots && !runner.diverged(); ++k) {
       std::array<Vector3, kNumPlanningFingers> p_WTargets;
       for (int j = 0; j < kNumPlanningFingers; ++j) {

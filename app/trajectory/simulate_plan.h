@@ -44,7 +44,9 @@ struct Released {
 };
 Released SimulateRelease(const World& world, WorldState state);
 
-/// Simulates a relative plan from `start` through its stages and the hold.
+/// Simulates a relative plan from `start` through its stages and the hold. A finger whose tip does
+/// not fit where it is to be put stays away, in the stages that keep it too: the outcome's plan
+/// says so.
 PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
                          const WorldState& start, const RelativePlan& plan,
                          const PlanTiming& timing);

@@ -424,19 +424,23 @@ function Path:optimize(options) end
 ---@field sigma? number standard deviation of the noise in the first iteration, 1e-06 to 100; 1.2
 ---@field final_sigma? number of the noise in the last iteration, 1e-06 to 100; 0.3
 ---@field temperature? number lambda over the standard deviation of the better half's costs, 1e-06 to 1e+06; 0.5
----@field patience? integer iterations without progress after which it ends, 1 to 1000; 7
+---@field patience? integer iterations without progress after which it ends, from the first rise on, 1 to 1000; 5
+---@field rise? number the first rise: the best reward is above that of doing nothing by this, 0 to 100; 0.02
+---@field proposals? number share of the samples that are steady pushes until the first rise, then a quarter of that, 0 to 1; 0.5
 ---@field progress? number what counts as progress: the best cost falls by this share of the score's spread, 0 to 100; 0.1
 ---@field max_travel? number of a target in a knot, each axis, 0 to 1 m; 0.03
 ---@field stage_seconds? number of one contact stage, 0.05 to 10 s; 0.8
 ---@field knots? integer force targets a stage; a fork keeps it, 1 to 100; 4
----@field hold_seconds? number the last targets are held before the last score, 0 to 30 s; 1
+---@field hold_seconds? number the last targets are held before the last score, 0 to 30 s; 1.5
+---@field room? number weight: share of contact sets that hold and that the surroundings leave free at the end, 0 to 1000; 1
 ---@field no_contact? number weight: no finger ever touches, 0 to 1000; 0.5
 ---@field slip? number tie-breaker, over the score's spread: share of the contact time at the cone's limit, 0 to 1000; 0.25
 ---@field effort? number tie-breaker: mean force over the largest one allowed, 0 to 1000; 0.1
 ---@field unrest? number tie-breaker: speed when the hold ends, 0 to 1000; 0.3
 ---@field speed? number tie-breaker: peak speed above 0.35 m/s, 0 to 1000; 0.8
----@field tip_overlap? number weight: a fingertip in the surroundings, half at once, half by the share of the time, 0 to 1000; 1
+---@field tip_overlap? number weight: a fingertip in the surroundings, by the share of a fingertip's radius, 0 to 1000; 1
 ---@field tip_spacing? number weight: the two tips overlap, by the share of a fingertip's radius, 0 to 1000; 1
+---@field hold? number weight: the object's way in the hold over what a certificate allows, from half of it on, 0 to 1000; 1
 ---@field fall? number weight: the object fell out of the scene, 0 to 1000; 1.5
 
 ---A picture of the path on the contact mesh.
@@ -478,10 +482,11 @@ function Optimizer:fork(options) end
 ---@return Rollout[]
 function Optimizer:rollouts() end
 
----The best plan simulated through the full Simbody model, and again at half the time step.
+---A plan simulated through the full Simbody model, and again at half the time step.
 ---@param options? CertifyOptions
+---@param plan? integer of those kept because their ends differ, 1 the best; 1
 ---@return Trajectory
-function Optimizer:certify(options) end
+function Optimizer:certify(options, plan) end
 
 ---@class CertifyOptions
 ---@field hold_seconds? number the last targets are kept this long, 0 to 30 s, within the rules at least 1.5; 1.5
@@ -498,6 +503,7 @@ function Optimizer:shot(options) end
 ---@field total number
 ---@field stage_scores number[] at the start of each stage
 ---@field final_score number how graspable the object is after the hold
+---@field room number for grasps there: of contact sets that hold, those that the surroundings leave free
 ---@field reward number the sum of these, a stage's start counting at most as much as the end
 ---@field no_contact number
 ---@field slip number
@@ -506,6 +512,7 @@ function Optimizer:shot(options) end
 ---@field speed number
 ---@field tip_overlap number
 ---@field tip_spacing number
+---@field hold number
 ---@field fall number
 
 ---@class Rollout

@@ -48,7 +48,7 @@ TEST(FactsJsonTest, ValuesWithinTheDetailsReadBack) {
   iteration.path = 3;
   iteration.end = "patience";
   RolloutFacts rollout;
-  rollout.cost = {1.0 / 3.0, {0.1, 0.7}, 0.2, {{"slip", 1e-17}}};
+  rollout.cost = {1.0 / 3.0, {0.1, 0.7}, 0.2, 0.3, 0.4, {{"slip", 1e-17}}};
   rollout.stages = {{{Finger::kThumb, true, false, 12, {1, 2, 3}, {0, 0, 1}, {{4, 5, 6}}}}};
   iteration.rollouts = {rollout, rollout};
   facts.details = iteration;

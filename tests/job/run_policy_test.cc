@@ -154,11 +154,11 @@ MotionlessEnd PressWithoutMoving(double overhang) {
   path.rank = 1;
   path.nodes = {top * graph.num_triangles() + top};
   const Mppi mppi = planner.MakeMppi(graph, path, config.mppi);
-  MppiState state = mppi.Start();
-  state.best_action.assign(state.mean.size(), 0.0);
-  state.best_action[state.best_action.size() / 2] = 1.0;  // the index finger on, its targets still
+  MppiPlan plan;
+  plan.action.assign(mppi.Start().mean.size(), 0.0);
+  plan.action[plan.action.size() / 2] = 1.0;  // the index finger on, its targets still
   MotionlessEnd end;
-  end.certificate = planner.Certify(mppi, state);
+  end.certificate = planner.Certify(mppi, plan);
   end.release = planner.Release(graph, end.certificate);
   const GraspSet grasps = planner.CompleteGrasps(end.certificate, end.release, 1);
   end.generated = grasps.count(GraspSource::kGenerator);

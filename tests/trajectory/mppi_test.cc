@@ -114,6 +114,7 @@ TEST(MppiTest, ItSaysWhetherPatienceOrTheLimitOfIterationsEndedIt) {
   const RulerProblem ruler;
   MppiConfig config = QuickConfig();
   config.iterations = 3;
+  config.rise = 0.0;
   MppiState state = RunIterations(Mppi(ruler.Make(1, 1), config), 2, 1);
   EXPECT_FALSE(state.ended());
   state = RunIterations(Mppi(ruler.Make(1, 1), config), 3, 1);
@@ -137,26 +138,98 @@ TEST(MppiTest, APlanWithoutContactIsTheWorstKindOfRest) {
   const auto states = StatesToScore(ruler.world, outcome);
   const auto scores = ruler.scorer.Score(states);
   const std::vector<ScoredState> end = {EndToScore(ruler.world, outcome)};
-  const PlanCost cost = CalcPlanCost(ruler.world, outcome, scores,
-                                     ruler.scorer.ScoreGraspable(end)[0], CostWeights(), 0.7, 0.1);
+  const PlanCost cost =
+      CalcPlanCost(ruler.world, outcome, scores, ruler.scorer.ScoreGraspable(end)[0], 0.0,
+                   CostWeights(), 0.7, 0.1);
   EXPECT_EQ(cost.no_contact, CostWeights().no_contact);
   EXPECT_NEAR(cost.total, CostWeights().no_contact, 1e-3);
 }
 
-TEST(PlanCostTest, TheTipsOverlapCostsByItsDepthUpToAFingertipsRadius) {
+TEST(MppiTest, TheScaleOfScoresIsThatOfTheFirstIterationAndCostsCompareFromThenOn) {
   const RulerProblem ruler;
-  const Mppi mppi(ruler.Make(2, 1), QuickConfig());
-  PlanOutcome outcome = mppi.Simulate(std::vector<double>(mppi.Start().mean.size(), -5.0));
-  const std::vector<double> scores(StatesToScore(ruler.world, outcome).size(), 0.0);
-  const auto cost_at = [&](double gap) {
-    outcome.min_tip_gap = gap;
-    return CalcPlanCost(ruler.world, outcome, scores, 0.0, CostWeights(), 0.7, 0.1).tip_spacing;
-  };
-  EXPECT_EQ(cost_at(0.1), 0.0);
-  EXPECT_EQ(cost_at(0.0), 0.0);
-  EXPECT_NEAR(cost_at(-0.0001), CostWeights().tip_spacing / 90.0, 1e-12);
-  EXPECT_NEAR(cost_at(-0.0045), CostWeights().tip_spacing / 2.0, 1e-12);
-  EXPECT_EQ(cost_at(-0.0199), CostWeights().tip_spacing);
+  const Mppi mppi(ruler.Make(2, 3), QuickConfig());
+  EXPECT_EQ(mppi.Start().score_scale, 0.0);
+  const MppiState first = RunIterations(mppi, 1, 1);
+  std::vector<double> rewards;
+  for (const MppiSample& sample : first.samples) rewards.push_back(sample.cost.reward);
+  EXPECT_EQ(first.score_scale, CalcScoreScale(rewards));
+  const MppiState later = RunIterations(mppi, 4, 1);
+  EXPECT_EQ(later.score_scale, first.score_scale);
+  // The best plan of the first iteration, met again as a sample of the second, costs the same.
+  EXPECT_EQ(RunIterations(mppi, 2, 1).samples[1].cost.total, first.best_cost);
+}
+
+TEST(MppiTest, DoingNothingIsWorthWhatTheStartIs) {
+  const RulerProblem ruler;
+  // Its end stands 1 cm inboard: OverhangScorer gives 0 there.
+  EXPECT_NEAR(Mppi(ruler.Make(2, 1), QuickConfig()).Start().rest_reward, 0.0, 1e-3);
+}
+
+TEST(MppiTest, PatienceBeginsWithTheFirstRise) {
+  const RulerProblem ruler;
+  MppiConfig config = QuickConfig();
+  config.iterations = 5;
+  config.patience = 1;
+  config.progress = 100.0;
+  config.rise = 100.0;  // never
+  EXPECT_EQ(RunIterations(Mppi(ruler.Make(2, 1), config), 5, 1).end, MppiEnd::kLimit);
+  config.rise = 0.0;
+  const MppiState state = RunIterations(Mppi(ruler.Make(2, 1), config), 2, 1);
+  EXPECT_EQ(state.rose_at, 1);
+  EXPECT_EQ(state.end, MppiEnd::kPatience);
+}
+
+TEST(MppiTest, ThePlansToChooseFromEndApartBestFirst) {
+  const RulerProblem ruler;
+  const MppiState state = RunIterations(Mppi(ruler.Make(2, 2), QuickConfig()), 5, 1);
+  ASSERT_GE(state.plans.size(), 2U);
+  ASSERT_LE(state.plans.size(), static_cast<std::size_t>(kMostPlans));
+  EXPECT_EQ(state.plans[0].action, state.best_action);
+  EXPECT_EQ(state.plans[0].cost.total, state.best_cost);
+  for (std::size_t i = 1; i < state.plans.size(); ++i) {
+    EXPECT_GE(state.plans[i].cost.total, state.plans[i - 1].cost.total);
+    for (std::size_t j = 0; j < i; ++j) {
+      const RigidTransform &a = state.plans[i].X_WO_end, &b = state.plans[j].X_WO_end;
+      EXPECT_TRUE((a.translation() - b.translation()).norm() >= kSameShift ||
+                  RadToDeg(RotationAngle(a.linear(), b.linear())) >= kSameTurnDeg);
+    }
+  }
+}
+
+TEST(MppiTest, WhatFollowsScreeningBeginsWithItsPlansAndCountsFromOne) {
+  const RulerProblem ruler;
+  MppiConfig few = QuickConfig();
+  few.samples = 8;
+  const Mppi screening(ruler.Make(2, 4), few), mppi(ruler.Make(2, 4), QuickConfig());
+  ThreadPool pool(2);
+  MppiState state = screening.Start();
+  screening.Screen(state, 2, pool);
+  screening.Screen(state, 1, pool);
+  EXPECT_EQ(state.screened, 3);
+  EXPECT_EQ(state.iteration, 0);
+  EXPECT_FALSE(state.ended());
+  const double screened = state.best_cost, scale = state.score_scale;
+  mppi.Step(state, pool);
+  EXPECT_EQ(state.iteration, 1);
+  EXPECT_EQ(state.best_history.size(), 1U);
+  EXPECT_LE(state.best_cost, screened);
+  EXPECT_EQ(state.score_scale, scale);
+  EXPECT_EQ(state.samples[1].cost.total, screened);
+}
+
+TEST(MppiTest, AFingerThatFitsNowhereOnItsTriangleStaysAway) {
+  const RulerProblem ruler;
+  MppiProblem problem = ruler.Make(2, 1);
+  const int bottom = 8 * 2;  // the strip's first triangle, which lies on the table
+  problem.path.nodes = {bottom * ruler.graph.num_triangles() + bottom,
+                        bottom * ruler.graph.num_triangles() + bottom};
+  const Mppi mppi(problem, QuickConfig());
+  const PlanOutcome outcome = mppi.Simulate(std::vector<double>(mppi.Start().mean.size(), 1.0));
+  EXPECT_EQ(outcome.contact_seconds, 0.0);
+  EXPECT_EQ(outcome.max_tip_overlap, 0.0);
+  for (const auto& stage : outcome.plan.stages) {
+    for (const WorldPlan::Finger& finger : stage) EXPECT_FALSE(finger.on || finger.kept);
+  }
 }
 
 TEST(MppiTest, AConfigurationThatNoSettingGivesIsOurBug) {
