@@ -15,6 +15,9 @@ Schema MakeCostSchema() {
   return schema;
 }
 const Schema kCostTerms = MakeCostSchema();
+const Schema kScreening{
+    "Screening",
+    {"round", "iterations", "rollouts", "value", "rest_reward", "score_scale", "best", "step_id"}};
 const Schema kRollout{"Rollout", {"cost", "weight", "terms", "X_WO"}};
 const Schema kNeighbours{"NeighbourMotion", {"worst", "moved_mm", "turned_deg", "disturbed"}};
 const Schema kPlanStage{"PlanStage", {"thumb", "index"}};
@@ -45,6 +48,24 @@ bool OptimizerStep(lua_State* L, LuaOptimizer& optimizer) {
   optimizer.Do(Verb::kIterate);
   CountMemory(L, kIterationKib);
   return true;
+}
+
+Pushed OptimizerScreen(lua_State* L, LuaOptimizer& optimizer, const ScreenOptions& options) {
+  optimizer.settings.update(options.ToSettings());
+  optimizer.Do(Verb::kScreen);
+  CountMemory(L, kIterationKib);
+  const auto& facts = std::get<ScreenFacts>(optimizer.node->facts.details);
+  RecordWriter record(L, kScreening);
+  record.Set("round", facts.round)
+      .Set("iterations", facts.iterations)
+      .Set("rollouts", facts.rollouts)
+      .Set("value", facts.value)
+      .Set("rest_reward", facts.rest_reward)
+      .Set("score_scale", facts.score_scale)
+      .Set("step_id", optimizer.step_id());
+  PushCost(L, facts.best);
+  record.SetTop("best");
+  return {1};
 }
 
 void OptimizerBack(LuaOptimizer& optimizer, const std::optional<int>& steps) {
@@ -119,7 +140,8 @@ Pushed OptimizerBest(lua_State* L, LuaOptimizer& optimizer) {
 std::vector<double> History(const LuaOptimizer& optimizer, double IterationFacts::*cost) {
   std::vector<double> history;
   for (const Timeline::Node* at = optimizer.node; at != optimizer.first; at = at->parent) {
-    history.push_back(std::get<IterationFacts>(at->facts.details).*cost);
+    const auto* facts = std::get_if<IterationFacts>(&at->facts.details);
+    if (facts != nullptr) history.push_back(facts->*cost);  // and not a round of screening
   }
   std::reverse(history.begin(), history.end());
   return history;
@@ -242,6 +264,7 @@ const ClassInfo& OptimizerClass() {
   static const ClassInfo info{"Optimizer",
                               {
                                   Method<&OptimizerStep>("step"),
+                                  Method<&OptimizerScreen>("screen", "options"),
                                   Method<&OptimizerBack>("back", "steps"),
                                   Query<&OptimizerFork>("fork", "options"),
                                   Query<&OptimizerRollouts>("rollouts"),
@@ -300,7 +323,7 @@ const ClassInfo& TrajectoryClass() {
 }
 
 std::vector<const Schema*> TrajectorySchemas() {
-  return {&kCostTerms, &kRollout, &kNeighbours, &kPlanStage, &kPlanFinger};
+  return {&kCostTerms, &kScreening, &kRollout, &kNeighbours, &kPlanStage, &kPlanFinger};
 }
 
 }  // namespace pregrasp

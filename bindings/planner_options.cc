@@ -67,6 +67,10 @@ const StageKeys& OptimizeKeys() {
   static const StageKeys keys = MakeKeys("OptimizeOptions", {"mppi"});
   return keys;
 }
+const StageKeys& ScreenKeys() {
+  static const StageKeys keys = MakeKeys("ScreenOptions", {"screen"}, {"samples", "iterations"});
+  return keys;
+}
 const StageKeys& CertifyKeys() {
   static const StageKeys keys = MakeKeys("CertifyOptions", {"certify"});
   return keys;
@@ -81,8 +85,8 @@ const StageKeys& MotionKeys() {
 }
 
 std::vector<const StageKeys*> AllKeys() {
-  return {&GraphKeys(),   &PruneKeys(),  &PathsKeys(), &OptimizeKeys(),
-          &CertifyKeys(), &GraspsKeys(), &MotionKeys()};
+  return {&GraphKeys(),  &PruneKeys(),   &PathsKeys(),  &OptimizeKeys(),
+          &ScreenKeys(), &CertifyKeys(), &GraspsKeys(), &MotionKeys()};
 }
 
 }  // namespace
@@ -149,6 +153,9 @@ PathsOptions LuaValue<PathsOptions>::Read(lua_State* L, int index, const std::st
 OptimizeOptions LuaValue<OptimizeOptions>::Read(lua_State* L, int index,
                                                 const std::string& /*path*/) {
   return ReadOptions<OptimizeOptions>(L, index, OptimizeKeys());
+}
+ScreenOptions LuaValue<ScreenOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
+  return ReadOptions<ScreenOptions>(L, index, ScreenKeys());
 }
 CertifyOptions LuaValue<CertifyOptions>::Read(lua_State* L, int index,
                                               const std::string& /*path*/) {

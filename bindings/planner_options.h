@@ -23,6 +23,7 @@ struct GraphOptions : StageOptions {};
 struct PruneOptions : StageOptions {};
 struct PathsOptions : StageOptions {};
 struct OptimizeOptions : StageOptions {};
+struct ScreenOptions : StageOptions {};
 struct CertifyOptions : StageOptions {};
 struct GraspsOptions : StageOptions {};
 struct MotionOptions : StageOptions {};
@@ -42,6 +43,10 @@ struct LuaValue<PathsOptions> {
 template <>
 struct LuaValue<OptimizeOptions> {
   static OptimizeOptions Read(lua_State* L, int index, const std::string& path);
+};
+template <>
+struct LuaValue<ScreenOptions> {
+  static ScreenOptions Read(lua_State* L, int index, const std::string& path);
 };
 template <>
 struct LuaValue<CertifyOptions> {

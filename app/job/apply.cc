@@ -49,6 +49,7 @@ void ApplyVerb(internal::Application& a) {
     case Verb::kPrune:
     case Verb::kPath:
       return internal::ApplyGraph(a);
+    case Verb::kScreen:
     case Verb::kIterate:
     case Verb::kCertify:
       return internal::ApplyTrajectory(a);
@@ -103,6 +104,7 @@ const char* TimedStage(Verb verb) {
     case Verb::kPrune:
     case Verb::kPath:
       return "graph";
+    case Verb::kScreen:
     case Verb::kIterate:
     case Verb::kCertify:
       return "trajectory";

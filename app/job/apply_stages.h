@@ -18,7 +18,7 @@ struct Application {
 
 void ApplyScene(Application& a);       // open, settle, verdict
 void ApplyGraph(Application& a);       // mesh, score, prune, path
-void ApplyTrajectory(Application& a);  // iterate, certify
+void ApplyTrajectory(Application& a);  // screen, iterate, certify
 void ApplyGrasp(Application& a);       // grasp, lift
 void ApplyMotion(Application& a);      // keyframe, fill, smooth, frame
 void ApplySimulation(Application& a);  // touch, let_go, move, wait

@@ -69,6 +69,35 @@ void Prepare(Application& a) {
   a.next.mppi = mppi;
 }
 
+void Screen(Application& a) {
+  a.next.ForgetTrajectory();
+  Prepare(a);
+  const ScreenConfig& config = a.next.config.screen;
+  Require(a.next.optimization->iteration == 0, "a path that is not being optimised yet",
+          "one that is");
+  MppiConfig few = a.next.config.mppi;
+  few.samples = config.samples;
+  const Planner planner = a.next.planner->WithConfig(a.next.config);
+  const Mppi mppi = planner.MakeMppi(*a.next.graph, *a.next.path, few);
+  MppiState state = *a.next.optimization;
+  mppi.Screen(state, config.iterations, a.job.pool());
+  ++a.next.screen_rounds;
+  a.facts.id = fmt::format("path.{}.screen.{}", a.next.path->rank, a.next.screen_rounds);
+  ScreenFacts facts;
+  facts.path = a.next.path->rank;
+  facts.round = a.next.screen_rounds;
+  facts.iterations = config.iterations;
+  facts.rollouts = config.iterations * config.samples;
+  facts.value = state.best.CalcValue();
+  facts.rest_reward = state.rest_reward;
+  facts.score_scale = state.score_scale;
+  facts.best = MakeCostFacts(state.best);
+  facts.stages = MakeStageFacts(mppi, mppi.Decode(state.best_action).stages);
+  a.facts.details = std::move(facts);
+  state.samples.clear();
+  a.next.optimization = std::make_shared<const MppiState>(std::move(state));
+}
+
 void Iterate(Application& a) {
   a.next.ForgetTrajectory();
   Prepare(a);
@@ -182,6 +211,7 @@ void CertifyBest(Application& a) {
 }  // namespace
 
 void ApplyTrajectory(Application& a) {
+  if (a.command.verb == Verb::kScreen) Screen(a);
   if (a.command.verb == Verb::kIterate) Iterate(a);
   if (a.command.verb == Verb::kCertify) CertifyBest(a);
 }

@@ -9,14 +9,14 @@
 namespace pregrasp {
 namespace {
 
-constexpr std::array<std::pair<Verb, const char*>, 19> kVerbs{{
+constexpr std::array<std::pair<Verb, const char*>, 20> kVerbs{{
     {Verb::kOpen, "open"},   {Verb::kSettle, "settle"},   {Verb::kVerdict, "verdict"},
     {Verb::kMesh, "mesh"},   {Verb::kScore, "score"},     {Verb::kPrune, "prune"},
     {Verb::kPath, "path"},   {Verb::kIterate, "iterate"}, {Verb::kCertify, "certify"},
     {Verb::kGrasp, "grasp"}, {Verb::kLift, "lift"},       {Verb::kKeyframe, "keyframe"},
     {Verb::kFill, "fill"},   {Verb::kSmooth, "smooth"},   {Verb::kFrame, "frame"},
     {Verb::kTouch, "touch"}, {Verb::kLetGo, "let_go"},    {Verb::kMove, "move"},
-    {Verb::kWait, "wait"},
+    {Verb::kWait, "wait"},   {Verb::kScreen, "screen"},
 }};
 
 }  // namespace

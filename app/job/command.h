@@ -14,8 +14,9 @@ enum class Verb {
   kScore,     ///< the nodes' scores
   kPrune,     ///< the next pruning step {nodes: at most so many}
   kPath,      ///< the path of {rank}
+  kScreen,    ///< the next round of a few iterations that tell what a path is worth
   kIterate,   ///< one iteration of MPPI
-  kCertify,   ///< the best plan through Simbody, and the release
+  kCertify,   ///< the best plan, or {plan}, through Simbody, and the release
   kGrasp,     ///< the next generated grasp, tested
   kLift,      ///< the simulated lift of grasp {grasp}
   kKeyframe,  ///< the next keyframe of the motion that ends in grasp {grasp}

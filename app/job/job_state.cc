@@ -12,6 +12,7 @@ void JobState::ForgetPath() {
   path.reset();
   mppi.reset();
   optimization.reset();
+  screen_rounds = 0;
   ForgetTrajectory();
 }
 

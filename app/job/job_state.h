@@ -28,6 +28,7 @@ struct JobState {
   std::shared_ptr<const ContactPath> path;
   std::shared_ptr<const Mppi> mppi;  ///< refers to `graph`
   std::shared_ptr<const MppiState> optimization;
+  int screen_rounds = 0;  ///< of the path
 
   std::shared_ptr<const Certificate> certificate;
   std::shared_ptr<const ReleaseResult> release;

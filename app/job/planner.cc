@@ -202,7 +202,9 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   // Where twenty thousand sets hold no grasp, refining twenty would take most of a run's time.
   CompletionConfig completion = config_.completion;
   completion.forces = config_.lift.forces;
-  if (search.max_sets > 0 && searched.found.empty()) completion.max_solves = 0;
+  if (search.max_sets > 0 && searched.found.empty()) {
+    completion.max_solves = completion.max_probes = 0;
+  }
   set.grasps = pregrasp::CompleteGrasps(places, completion,
                                         GenerateGrasps(X_WB, release, path_rank), fixed, pool_)
                    .grasps;

@@ -18,6 +18,19 @@
 
 namespace pregrasp {
 
+/// How many paths are given a few rollouts before any is optimised, by successive halving: in each
+/// round the paths that are left are given the same number of iterations more, then the better half
+/// of them goes on. Where `enough` paths are `clear`ly worth it already, no others are tried. The
+/// paper's order is not screened.
+struct ScreenConfig {
+  int paths = 24;      ///< in the first round; 1 does not screen
+  int samples = 16;    ///< rollouts an iteration
+  int iterations = 2;  ///< a path and round
+  int rounds = 3;
+  int enough = 4;      ///< paths after which screening ends, if they are clear
+  double clear = 0.5;  ///< worth so much more than doing nothing; a plan can be worth 6
+};
+
 /// The settings of all stages: the same defaults for every scene.
 struct PlannerConfig {
   int cloud_points = 512;  ///< of the object cloud O
@@ -25,6 +38,7 @@ struct PlannerConfig {
   ContactGraphConfig graph;
   int stages = 2;  ///< N, nodes in a path
   PathOrder order = PathOrder::kExplore;
+  ScreenConfig screen;
   MppiConfig mppi;
   CertifyConfig certify;
   PlacementSearchConfig placements;

@@ -29,6 +29,15 @@ std::string CommonReason(const JobState& state) {
   return fmt::format("{} ({} of {})", most->first, most->second, state.grasps->grasps.size());
 }
 
+// The step of the path of `rank`; null if there are not so many.
+const Node* TakePath(Timeline& timeline, const Node& graph, int rank) {
+  const auto state = timeline.GetState(graph);
+  if (state->paths->Find(state->config.order, state->config.stages, rank) == nullptr) {
+    return nullptr;
+  }
+  return &timeline.Do(graph, Verb::kPath, {{"rank", rank}});
+}
+
 class Runner {
  public:
   Runner(Timeline& timeline, const RunConfig& config,
@@ -42,10 +51,15 @@ class Runner {
       return {&timeline_.root(), "start_graspable", {}};
     }
     const Node& graph = BuildGraph();
+    const bool paper = timeline_.GetState(graph)->config.order == PathOrder::kPaper;
+    std::vector<const Node*> screened;
+    if (!paper) screened = ScreenPaths(timeline_, graph, progress_);
     RunResult result;
-    for (int rank = 1; rank <= config_.paths && HasPath(graph, rank); ++rank) {
-      const Node& end = Try(graph, rank);
-      result.reasons.push_back(Explain(end, rank));
+    for (int number = 1; number <= config_.paths; ++number) {
+      const Node* path = FindPath(graph, screened, number);
+      if (path == nullptr) break;
+      const Node& end = Try(*path, number);
+      result.reasons.push_back(Explain(end));
       const bool success = end.progress.reached == Progress::Reached::kOk;
       if (success && result.end == nullptr) result.end = &end;
       if (success && !config_.all) break;
@@ -67,14 +81,30 @@ class Runner {
     return PruneAll(timeline_, timeline_.Do(mesh, Verb::kScore), {});
   }
 
-  bool HasPath(const Node& graph, int rank) const {
-    const auto state = timeline_.GetState(graph);
-    return state->paths->Find(state->config.order, state->config.stages, rank) != nullptr;
+  // The `number`-th path to optimise: those that were screened by what that found, then the others
+  // by rank; null beyond the last one.
+  const Node* FindPath(const Node& graph, const std::vector<const Node*>& screened, int number) {
+    if (number <= std::ssize(screened)) return screened[number - 1];
+    return TakePath(timeline_, graph, number);
   }
 
-  const Node& Try(const Node& graph, int rank) {
-    const std::string name = fmt::format("path {} of {}", rank, config_.paths);
-    const Node& certified = Certify(graph, rank, name);
+  const Node& Try(const Node& path, int number) {
+    const std::string name = fmt::format("path {} of {}", number, config_.paths);
+    const Node& optimised = Optimise(path, name);
+    const auto plans = std::ssize(timeline_.GetState(optimised)->optimization->plans);
+    const Node* best = nullptr;
+    for (int plan = 1; plan <= std::min<std::ptrdiff_t>(config_.plans, plans); ++plan) {
+      const Node& end = TryPlan(optimised, plan, name);
+      if (best == nullptr || best->progress < end.progress) best = &end;
+      if (end.progress.reached == Progress::Reached::kOk) break;
+    }
+    return *best;
+  }
+
+  const Node& TryPlan(const Node& optimised, int plan, const std::string& name) {
+    nlohmann::json options = nlohmann::json::object();
+    if (plan > 1) options["plan"] = plan;
+    const Node& certified = timeline_.Do(optimised, Verb::kCertify, options);
     if (!std::get<CertifyFacts>(certified.facts.details).certified) return certified;
     if (timeline_.GetState(certified)->release->conditions.empty()) return certified;
     Report(name + ", grasps", 0, 1);
@@ -82,8 +112,8 @@ class Runner {
     return MoveHand(grasps, name);
   }
 
-  const Node& Certify(const Node& graph, int rank, const std::string& name) {
-    const Node* node = &timeline_.Do(graph, Verb::kPath, {{"rank", rank}});
+  const Node& Optimise(const Node& path, const std::string& name) {
+    const Node* node = &path;
     bool ended = false;
     while (!ended) {
       const auto* last = std::get_if<IterationFacts>(&node->facts.details);
@@ -92,7 +122,7 @@ class Runner {
       node = &timeline_.Do(*node, Verb::kIterate);
       ended = !std::get<IterationFacts>(node->facts.details).end.empty();
     }
-    return timeline_.Do(*node, Verb::kCertify);
+    return *node;
   }
 
   // Tries the lifting grasps in turn; the first that ends in success is it, else the one that came
@@ -112,10 +142,10 @@ class Runner {
     return *best;
   }
 
-  std::string Explain(const Node& end, int rank) const {
+  std::string Explain(const Node& end) const {
     const auto state = timeline_.GetState(end);
     const std::string head =
-        fmt::format("path {}, cost {:.3f}: ", rank, state->optimization->best_cost);
+        fmt::format("path {}, cost {:.3f}: ", state->path->rank, state->optimization->best_cost);
     if (!state->certificate->certified) {
       std::string reasons;
       for (const CertifyReason reason : state->certificate->reasons) {
@@ -163,12 +193,47 @@ class Runner {
 void RunConfig::Validate() const {
   RequireWithin("", "paths", kPaths, paths);
   RequireWithin("", "motions", {1, 1000, 1}, motions);
+  RequireWithin("", "plans", {1, kMostPlans, 1}, plans);
 }
 
 RunResult RunPlanner(Timeline& timeline, const RunConfig& config,
                      const std::function<void(const RunProgress&)>& progress) {
   config.Validate();
   return Runner(timeline, config, progress).Run();
+}
+
+std::vector<const Node*> ScreenPaths(Timeline& timeline, const Node& graph,
+                                     const std::function<void(const RunProgress&)>& progress) {
+  const ScreenConfig config = timeline.GetState(graph)->config.screen;
+  const auto facts = [](const Node* node) -> const ScreenFacts& {
+    return std::get<ScreenFacts>(node->facts.details);
+  };
+  std::vector<const Node*> paths;
+  std::ptrdiff_t going_on = config.paths > 1 ? config.paths : 0;
+  int clear = 0;
+  for (int round = 1; round <= config.rounds && going_on > 0 && clear < config.enough; ++round) {
+    clear = 0;
+    for (std::ptrdiff_t i = 0; i < going_on && clear < config.enough; ++i) {
+      if (progress) {
+        progress({fmt::format("screening, round {} of {}", round, config.rounds),
+                  static_cast<int>(i), static_cast<int>(going_on)});
+      }
+      ThrowIfInterrupted();
+      if (round == 1) {
+        const Node* path = TakePath(timeline, graph, static_cast<int>(i) + 1);
+        if (path == nullptr) break;
+        paths.push_back(path);
+      }
+      paths[i] = &timeline.Do(*paths[i], Verb::kScreen);
+      clear += facts(paths[i]).value - facts(paths[i]).rest_reward >= config.clear ? 1 : 0;
+    }
+    // In a later round those that were not tried any more keep what the round before found.
+    going_on = std::min(going_on, std::ssize(paths));
+    std::stable_sort(paths.begin(), paths.begin() + going_on,
+                     [&](const Node* x, const Node* y) { return facts(x).value > facts(y).value; });
+    going_on = (going_on + 1) / 2;
+  }
+  return paths;
 }
 
 const Node& PruneAll(Timeline& timeline, const Node& scored, nlohmann::json options) {

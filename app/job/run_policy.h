@@ -16,6 +16,7 @@ struct RunConfig {
   int paths = 10;    ///< full optimisations at most, of kPaths (design: the budget)
   bool all = false;  ///< go on to the last path after the first success
   int motions = 4;   ///< lifting grasps of one path whose hand motion is tried
+  int plans = 3;     ///< of one path that are put to certification, where their ends differ
 
   void Validate() const;
 };
@@ -34,12 +35,20 @@ struct RunResult {
   std::vector<std::string> reasons;
 };
 
-/// The whole pipeline (paper, Figure 2) as commands to a timeline: the start's verdict, graph, then
-/// path after path in their order until one ends in a certified trajectory, a grasp whose lift is
-/// held and a hand motion without a failed frame. @throws Interrupted, with what was done in the
-/// timeline.
+/// The whole pipeline (paper, Figure 2) as commands to a timeline: the start's verdict, graph,
+/// screening unless the order is the paper's (ScreenPaths), then path after path until one ends in
+/// a certified trajectory, a grasp whose lift is held and a hand motion without a failed frame.
+/// @throws Interrupted, with what was done in the timeline.
 RunResult RunPlanner(Timeline& timeline, const RunConfig& config,
                      const std::function<void(const RunProgress&)>& progress);
+
+/// Gives the first paths a few rollouts each, the better half of them more, and so on
+/// (ScreenConfig).
+/// @returns the last node of each path: first those that came furthest, of these the best value,
+/// then the better rank. Fewer than there are, where enough are clear before.
+std::vector<const Timeline::Node*> ScreenPaths(
+    Timeline& timeline, const Timeline::Node& graph,
+    const std::function<void(const RunProgress&)>& progress);
 
 // The parts of it that a script calls too, each from one node to the last one of what it did.
 

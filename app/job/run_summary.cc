@@ -163,10 +163,16 @@ void FillMotion(const JobState& state, RunSummary& summary) {
 
 void FillCounts(const Timeline& timeline, const Node& node, RunSummary& summary) {
   int paths = 0, iterations = 0, rollouts = 0;
+  std::set<std::string> screened;
   std::set<std::string> optimised;  // paths with a certificate, until this one's
   const Node* certified = FindOnTheWay<CertifyFacts>(node);
   for (const auto& step : timeline.nodes()) {
     paths += Details<PathFacts>(*step) != nullptr ? 1 : 0;
+    if (const auto* screening = Details<ScreenFacts>(*step)) {
+      iterations += screening->iterations;
+      rollouts += screening->rollouts;
+      screened.insert(FindOnTheWay<PathFacts>(*step)->id());
+    }
     if (const auto* iteration = Details<IterationFacts>(*step)) {
       ++iterations;
       rollouts += static_cast<int>(iteration->rollouts.size());
@@ -188,7 +194,7 @@ void FillCounts(const Timeline& timeline, const Node& node, RunSummary& summary)
   }
   if (!optimised.empty()) {
     summary.n_paths = static_cast<int>(optimised.size());
-    summary.n_screened = 0;
+    summary.n_screened = static_cast<int>(screened.size());
   }
 }
 

@@ -53,6 +53,33 @@ Settings GraphSettings() {
   };
 }
 
+Settings ScreenSettings() {
+  return {
+      {"screen.paths",
+       Whole(1, 1000),
+       "given a few rollouts before any is optimised; 1 does not screen",
+       FIELD(screen.paths),
+       {}},
+      {"screen.samples", Whole(4, 4096), "rollouts an iteration", FIELD(screen.samples), {}},
+      {"screen.iterations", Whole(1, 1000), "of a path in a round", FIELD(screen.iterations), {}},
+      {"screen.rounds",
+       Whole(1, 20),
+       "after each of which the better half of the paths goes on",
+       FIELD(screen.rounds),
+       {}},
+      {"screen.enough",
+       Whole(1, 1000),
+       "paths that are clearly worth it, after which screening ends",
+       FIELD(screen.enough),
+       {}},
+      {"screen.clear",
+       Real(0.0, 100.0),
+       "clearly: above the worth of doing nothing by this",
+       FIELD(screen.clear),
+       {}},
+  };
+}
+
 Settings MppiSettings() {
   return {
       {"mppi.samples", Whole(4, 4096), "rollouts an iteration", FIELD(mppi.samples), {}},
@@ -352,8 +379,9 @@ Settings MotionSettings() {
 const std::vector<PlannerSetting>& SettingsTable() {
   static const Settings all = [] {
     Settings rows;
-    for (const Settings& stage : {GraphSettings(), MppiSettings(), CertifySettings(),
-                                  GraspsSettings(), LiftSettings(), MotionSettings()}) {
+    for (const Settings& stage :
+         {GraphSettings(), ScreenSettings(), MppiSettings(), CertifySettings(), GraspsSettings(),
+          LiftSettings(), MotionSettings()}) {
       rows.insert(rows.end(), stage.begin(), stage.end());
     }
     return rows;

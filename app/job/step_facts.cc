@@ -45,6 +45,8 @@ StepDetails MakeDetails(Verb verb) {
       return PruneFacts{};
     case Verb::kPath:
       return PathFacts{};
+    case Verb::kScreen:
+      return ScreenFacts{};
     case Verb::kIterate:
       return IterationFacts{};
     case Verb::kCertify:

@@ -362,6 +362,32 @@ struct RolloutFacts {
   }
 };
 
+/// A round of screening: what a path seems to be worth.
+struct ScreenFacts {
+  int path = 0;  ///< its rank
+  int round = 0;
+  int iterations = 0, rollouts = 0;  ///< of this round
+  /// Of the best plan so far: its reward less what a certificate refuses, without tie-breakers, so
+  /// that paths compare; and what doing nothing is worth.
+  double value = 0.0, rest_reward = 0.0;
+  double score_scale = 0.0;
+  CostFacts best;
+  std::vector<StageFacts> stages;  ///< of the best plan
+
+  template <typename Self, typename Visit>
+  static void VisitFields(Self& self, Visit&& visit) {
+    visit("path", self.path);
+    visit("round", self.round);
+    visit("iterations", self.iterations);
+    visit("rollouts", self.rollouts);
+    visit("value", self.value);
+    visit("rest_reward", self.rest_reward);
+    visit("score_scale", self.score_scale);
+    visit("best", self.best);
+    visit("stages", self.stages);
+  }
+};
+
 struct IterationFacts {
   int path = 0;  ///< its rank
   int iteration = 0, limit = 0;
@@ -648,8 +674,8 @@ struct SimulationFacts {
 
 /// One alternative for each kind of step; which one follows from the command's verb.
 using StepDetails = std::variant<OpenFacts, SettleFacts, VerdictFacts, MeshFacts, ScoreFacts,
-                                 PruneFacts, PathFacts, IterationFacts, CertifyFacts, GraspFacts,
-                                 LiftFacts, FrameFacts, MotionFacts, SimulationFacts>;
+                                 PruneFacts, PathFacts, ScreenFacts, IterationFacts, CertifyFacts,
+                                 GraspFacts, LiftFacts, FrameFacts, MotionFacts, SimulationFacts>;
 
 /// One step: the unit of steps.jsonl, of run.rawlog and of the pictures, all under one id.
 struct StepFacts {                // NOLINT(bugprone-exception-escape): moving JSON does not throw

@@ -13,7 +13,7 @@ namespace pregrasp {
 namespace {
 
 // States kept: those of about ten paths. Older ones are computed again when they are needed.
-constexpr std::size_t kKeptStates = 400;
+constexpr std::size_t kKeptStates = 1500;
 
 // "~2" of "path.1.mppi.7~2".
 std::string BranchOf(const std::string& id) {

@@ -202,10 +202,13 @@ bool IsKeyStep(const StepFacts& step, const FactsSource& steps) {
   switch (step.command.verb) {
     case Verb::kOpen:
     case Verb::kScore:
-    case Verb::kPath:
     case Verb::kCertify:
     case Verb::kKeyframe:
       return true;
+    case Verb::kPath: {  // of those that are screened, the first alone
+      const auto& facts = std::get<PathFacts>(step.details);
+      return facts.order == "paper" || facts.rank == 1;
+    }
     case Verb::kPrune:
       return std::get<PruneFacts>(step.details).complete;
     case Verb::kIterate: {

@@ -119,6 +119,17 @@ Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
   return lines;
 }
 
+Lines Describe(const Scene& /*scene*/, const ScreenFacts& facts) {
+  return {
+      fmt::format("Round {} of screening: {} plans along path {} were simulated, to see whether "
+                  "it is worth more.",
+                  facts.round, facts.rollouts, facts.path),
+      fmt::format("worth\t{:.3f}", facts.value),
+      fmt::format("doing nothing\t{:.3f}", facts.rest_reward),
+      fmt::format("score, end\t{:.3f}", facts.best.final_score),
+      fmt::format("room for grasps\t{:.3f}", facts.best.room)};
+}
+
 std::string EndOfOptimisation(const IterationFacts& facts) {
   if (facts.end.empty()) return "";
   return facts.end == "limit" ? fmt::format(" The limit of {} iterations ends it.", facts.limit)

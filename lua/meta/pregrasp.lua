@@ -469,6 +469,26 @@ local Optimizer = {}
 ---@return boolean # false, and nothing done, when it has ended
 function Optimizer:step() end
 
+---A few iterations that tell what the path is worth, before the first step(), which goes on from
+---what they found.
+---@param options? ScreenOptions
+---@return Screening
+function Optimizer:screen(options) end
+
+---@class ScreenOptions
+---@field samples? integer rollouts an iteration, 4 to 4096; 16
+---@field iterations? integer of a path in a round, 1 to 1000; 2
+
+---@class Screening
+---@field round integer
+---@field iterations integer of this round
+---@field rollouts integer
+---@field value number of the best plan so far: its reward less what a certificate refuses
+---@field rest_reward number of doing nothing
+---@field score_scale number
+---@field best CostTerms
+---@field step_id string
+
 ---Takes iterations back.
 ---@param steps? integer 1
 function Optimizer:back(steps) end

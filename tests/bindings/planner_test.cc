@@ -124,7 +124,7 @@ TEST_F(PlannerScriptTest, ANodeSaysWhyItIsThereOrNot) {
 
 TEST_F(PlannerScriptTest, PathsComeBestFirstByNextByTopAndByNumber) {
   EXPECT_EQ(Script(R"(
-    local paths = pruned():paths{ stages = 3 }
+    local paths = pruned():paths{ stages = 3, order = "paper" }
     local top = paths:top(5)
     print(#top, paths.stages, paths.count > 100, top[1].step_id == "")
     for i = 1, 4 do assert(top[i].score >= top[i + 1].score and top[i].rank == i) end
@@ -145,6 +145,44 @@ TEST_F(PlannerScriptTest, PathsComeBestFirstByNextByTopAndByNumber) {
     while paths:next() do n = n + 1 end
     print(n == paths.count, paths:next(), paths[n + 1], paths[n].rank == n))"),
             "true\tnil\tnil\ttrue\n");
+}
+
+TEST_F(PlannerScriptTest, PathsThatExploreComeByTheirValueAndBeginWhereAFingertipFits) {
+  EXPECT_EQ(Script(R"(
+    local g = pruned()
+    local paths, papers = g:paths(), g:paths{ order = "paper" }
+    print(paths.order, papers.order, papers[1].value == papers[1].score, papers[1].repeats)
+    local top = paths:top(8)
+    for i, p in ipairs(top) do
+      assert(p.nodes[1].thumb_fits or p.nodes[1].index_fits)
+      assert(i == 1 or p.value <= top[i - 1].value)
+    end
+    print(top[1].repeats, top[8].repeats > 0, top[1].value)
+    for id = 0, 143 do
+      local node = g:node(id)
+      if not (node.thumb_fits or node.index_fits) then
+        assert(g:why(id).text:find("no path begins", 1, true))
+      end
+    end)"),
+            "explore\tpaper\ttrue\t0.0\n0.0\ttrue\t1.0\n");
+}
+
+TEST_F(PlannerScriptTest, ScreeningTellsWhatAPathIsWorthAndStepsGoOnFromThere) {
+  EXPECT_EQ(Script(R"(
+    local o = optimizer()
+    local first = o:screen{ samples = 4, iterations = 1 }
+    local second = o:screen()
+    print(first.round, first.iterations, first.rollouts, first.step_id, second.round, second.step_id)
+    print(second.value >= first.value, second.score_scale == first.score_scale, second.rest_reward <= 3)
+    print(o.iteration, o.best_cost, #o.best_history)
+    o:step()
+    print(o.iteration, o.best_cost <= second.best.total, o.score_scale == first.score_scale, #o.best_history)
+    print(second.best.room >= 0, second.best.hold >= 0, second.best.reward >= second.best.final_score)
+    local _, refusal = pcall(o.screen, o)
+    print(refusal:find("expected a path that is not being optimised yet", 1, true) ~= nil))"),
+            "1\t1\t4\tpath.1.screen.1\t2\tpath.1.screen.2\ntrue\ttrue\ttrue\n0\tnil\t0\n"
+            "1\ttrue\ttrue\t1\ntrue\ttrue\ttrue\n"
+            "true\n");
 }
 
 TEST_F(PlannerScriptTest, AnOptimisationIsSteppedTakenBackAndForkedExactly) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
@@ -26,6 +27,7 @@ class RunPolicyTest : public testing::Test {
     setup_.config.graph.samples = 1;
     setup_.config.mppi.samples = 6;
     setup_.config.mppi.iterations = 3;
+    setup_.config.screen = {4, 4, 1, 2, 4, 100.0};  // nothing is worth so much more than nothing
     setup_.config.grasp_samples = 2;
     setup_.config.search.max_sets = 4096;
     setup_.config.search.max_solves = 16;
@@ -52,13 +54,78 @@ TEST_F(RunPolicyTest, EveryStageIsAStep) {
   const RunResult result = RunPlanner(timeline, run_, {});
   EXPECT_EQ(result.reasons.size(), 2U);
   const std::vector<std::string> ids = Ids(timeline);
-  const std::vector<std::string> head(ids.begin(), ids.begin() + 9);
+  const std::vector<std::string> head(ids.begin(), ids.begin() + 15);
   EXPECT_EQ(head, (std::vector<std::string>{"scene.start", "scene.verdict", "graph.mesh",
                                             "graph.score", "graph.prune.1", "graph.prune.2",
-                                            "graph.prune.3", "paths.rank.1", "path.1.mppi.1"}));
-  for (const char* id : {"path.1.mppi.3", "path.1.certify", "paths.rank.2", "path.2.certify"}) {
-    EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 1) << id;
+                                            "graph.prune.3", "paths.rank.1", "path.1.screen.1",
+                                            "paths.rank.2", "path.2.screen.1", "paths.rank.3",
+                                            "path.3.screen.1", "paths.rank.4", "path.4.screen.1"}));
+  const auto count_ends = [&](const std::string& end) {
+    return std::count_if(ids.begin(), ids.end(), [&](const std::string& id) {
+      return id.size() > end.size() && id.compare(id.size() - end.size(), end.size(), end) == 0;
+    });
+  };
+  EXPECT_EQ(count_ends(".screen.2"), 2);  // the better half
+  EXPECT_EQ(count_ends(".mppi.3"), 2);
+  EXPECT_EQ(count_ends(".certify"), 2);
+}
+
+TEST_F(RunPolicyTest, TheBetterHalfOfTheScreenedPathsGoesOnAndTheBestIsOptimisedFirst) {
+  setup_.config.screen.paths = 5;
+  Job job(setup_, 1);
+  Timeline timeline(job);
+  RunPlanner(timeline, run_, {});
+  std::map<int, double> first, second;  // values by path
+  std::vector<int> optimised;
+  for (const auto& node : timeline.nodes()) {
+    if (const auto* screening = std::get_if<ScreenFacts>(&node->facts.details)) {
+      (screening->round == 1 ? first : second)[screening->path] = screening->value;
+      EXPECT_EQ(screening->rollouts, 4);
+      EXPECT_GE(screening->value, first.at(screening->path));  // it never gets worse
+    }
+    const auto* iteration = std::get_if<IterationFacts>(&node->facts.details);
+    if (iteration != nullptr && iteration->iteration == 1) optimised.push_back(iteration->path);
   }
+  EXPECT_EQ(first.size(), 5U);
+  EXPECT_EQ(second.size(), 3U);
+  for (const auto& [path, value] : first) {
+    for (const auto& [other, unused] : second) {
+      if (second.count(path) == 0) EXPECT_LE(value, first.at(other)) << path << " " << other;
+    }
+  }
+  ASSERT_EQ(optimised.size(), 2U);
+  for (const auto& [path, value] : second) EXPECT_LE(value, second.at(optimised[0])) << path;
+}
+
+TEST_F(RunPolicyTest, ScreeningEndsWhereEnoughPathsAreClearlyWorthIt) {
+  setup_.config.screen.enough = 2;
+  setup_.config.screen.clear = 0.0;  // whatever is not worse than nothing
+  Job job(setup_, 1);
+  Timeline timeline(job);
+  const RunResult result = RunPlanner(timeline, run_, {});
+  int screened = 0, clear = 0;
+  for (const auto& node : timeline.nodes()) {
+    const auto* facts = std::get_if<ScreenFacts>(&node->facts.details);
+    if (facts == nullptr) continue;
+    EXPECT_LT(clear, 2);  // none is screened after that
+    EXPECT_EQ(facts->round, 1);
+    ++screened;
+    clear += facts->value >= facts->rest_reward;
+  }
+  EXPECT_EQ(clear, 2);
+  EXPECT_EQ(Summarize(timeline, *result.end).n_screened, screened);
+}
+
+TEST_F(RunPolicyTest, ThePapersOrderIsNotScreened) {
+  setup_.config.order = PathOrder::kPaper;
+  Job job(setup_, 1);
+  Timeline timeline(job);
+  const RunResult result = RunPlanner(timeline, run_, {});
+  const std::vector<std::string> ids = Ids(timeline);
+  EXPECT_EQ(ids[7], "paths.rank.1");
+  EXPECT_EQ(ids[8], "path.1.mppi.1");
+  EXPECT_EQ(std::count(ids.begin(), ids.end(), "paths.rank.2"), 1);
+  EXPECT_EQ(Summarize(timeline, *result.end).n_screened, 0);
 }
 
 TEST_F(RunPolicyTest, TheSummarySaysWhatWasDone) {
@@ -71,8 +138,9 @@ TEST_F(RunPolicyTest, TheSummarySaysWhatWasDone) {
   EXPECT_EQ(summary.n_paths, 2);
   EXPECT_EQ(summary.counts.nodes, 1600);
   EXPECT_GE(summary.counts.kept, 160 - 1);
-  EXPECT_EQ(summary.counts.iterations, 6);
-  EXPECT_EQ(summary.counts.rollouts, 36);
+  EXPECT_EQ(summary.n_screened, 4);
+  EXPECT_EQ(summary.counts.iterations, 4 + 2 + 6);
+  EXPECT_EQ(summary.counts.rollouts, 4 * (4 + 2) + 36);
   EXPECT_EQ(summary.start_grasps.certified, true);
 }
 
@@ -105,7 +173,7 @@ TEST_F(RunPolicyTest, AnInterruptLeavesWhatWasDone) {
   };
   EXPECT_THROW(RunPlanner(timeline, run_, interrupt), Interrupted);
   ClearInterrupt();
-  EXPECT_EQ(timeline.last().id(), "path.1.mppi.2");
+  EXPECT_EQ(std::get<IterationFacts>(timeline.last().facts.details).iteration, 2);
 }
 
 TEST_F(RunPolicyTest, MissingWeightsAreBadInputThatNamesTheFile) {

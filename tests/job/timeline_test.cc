@@ -81,8 +81,8 @@ TEST_F(TimelineTest, IdsAreUniqueWhateverIsDoneAndUndone) {
   Timeline timeline(*job);
   MakePath(timeline);
   Rng rng(11);
-  const Verb verbs[] = {Verb::kMesh,    Verb::kScore,   Verb::kPrune, Verb::kPath,
-                        Verb::kIterate, Verb::kCertify, Verb::kWait,  Verb::kTouch};
+  const Verb verbs[] = {Verb::kMesh,    Verb::kScore, Verb::kPrune, Verb::kPath,  Verb::kIterate,
+                        Verb::kCertify, Verb::kWait,  Verb::kTouch, Verb::kScreen};
   for (int i = 0; i < 150; ++i) {
     const Node& from = *timeline.nodes()[rng.UniformInt(timeline.nodes().size())];
     const Verb verb = verbs[rng.UniformInt(std::size(verbs))];
@@ -129,7 +129,7 @@ TEST_F(TimelineTest, AStateThatWasDroppedIsComputedAgainTheSame) {
   const Node& iteration = timeline.Do(path, Verb::kIterate);
   const std::vector<double> mean = timeline.GetState(iteration)->optimization->mean;
   const Node* sim = &timeline.root();
-  for (int i = 0; i < 450; ++i) sim = &timeline.Do(*sim, Verb::kWait, {{"steps", 0}});
+  for (int i = 0; i < 1600; ++i) sim = &timeline.Do(*sim, Verb::kWait, {{"steps", 0}});
   EXPECT_EQ(timeline.GetState(iteration)->optimization->mean, mean);
 }
 
