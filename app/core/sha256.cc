@@ -61,4 +61,9 @@ std::string Sha256OfFile(const std::filesystem::path& file) {
   return digest.Hex();
 }
 
+const std::string& Sha256OfProgram() {
+  static const std::string hash = Sha256OfFile("/proc/self/exe");
+  return hash;
+}
+
 }  // namespace pregrasp

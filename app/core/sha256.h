@@ -12,4 +12,7 @@ std::string Sha256(std::string_view bytes);
 /// Of a whole file. @throws InputError if it cannot be read.
 std::string Sha256OfFile(const std::filesystem::path& file);
 
+/// Of the running program's own file, read once.
+const std::string& Sha256OfProgram();
+
 }  // namespace pregrasp

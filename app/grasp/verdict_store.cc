@@ -15,13 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of the running program: whatever may change a verdict, shipped hand and libraries linked in
-// aside, is in it.
-const std::string& ProgramHash() {
-  static const std::string hash = Sha256OfFile("/proc/self/exe");
-  return hash;
-}
-
 // Numbers and words, each followed by a blank: the text that the key is the hash of.
 class KeyText {
  public:
@@ -229,7 +222,7 @@ std::string StartVerdictKey(const Scene& scene, const HandModel& hand,
                             const StartCertificateConfig& config,
                             const std::vector<std::vector<GraspContact>>& generated) {
   KeyText out;
-  out << "start" << ProgramHash().c_str();
+  out << "start" << Sha256OfProgram().c_str();
   AddScene(scene, out);
   AddHand(hand, out);
   AddConfig(surface, config, out);

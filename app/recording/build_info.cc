@@ -5,7 +5,9 @@
 #include <zlib.h>
 
 #include <Eigen/Core>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 namespace pregrasp {
 namespace internal {
@@ -16,8 +18,44 @@ const char* ProgramVersion() { return PREGRASP_VERSION; }
 
 const char* GitHash() { return internal::kGitHash; }
 
+std::string Compiler() {
+#ifdef __clang__
+  return fmt::format("clang {}.{}.{}", __clang_major__, __clang_minor__, __clang_patchlevel__);
+#else
+  return fmt::format("gcc {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
+#endif
+}
+
+namespace {
+
+// "fcl" of .../libfcl.so.0.7.0: "0.7.0".
+std::map<std::string, std::string> LoadedVersions() {
+  const std::map<std::string, std::string> names = {{"assimp", "assimp"},
+                                                    {"ccd", "ccd"},
+                                                    {"fcl", "fcl"},
+                                                    {"nlopt", "nlopt"},
+                                                    {"osmesa", "OSMesa"},
+                                                    {"qhull", "qhull_r"},
+                                                    {"simbody", "SimTKsimbody"},
+                                                    {"urdfdom", "urdfdom_model"}};
+  const std::regex file(R"(/lib([\w+.-]+)\.so\.([0-9.]+)$)");
+  std::map<std::string, std::string> versions;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    std::smatch match;
+    if (!std::regex_search(line, match, file)) continue;
+    for (const auto& [name, library] : names) {
+      if (match[1] == library) versions[name] = match[2];
+    }
+  }
+  return versions;
+}
+
+}  // namespace
+
 std::map<std::string, std::string> BuildLibraries() {
-  return {
+  std::map<std::string, std::string> versions = LoadedVersions();
+  versions.merge(std::map<std::string, std::string>{
       {"eigen",
        fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"fmt",
@@ -27,7 +65,8 @@ std::map<std::string, std::string> BuildLibraries() {
       {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,
                                     NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
       {"zlib", zlibVersion()},
-  };
+  });
+  return versions;
 }
 
 }  // namespace pregrasp

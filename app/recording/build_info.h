@@ -12,8 +12,12 @@ const char* ProgramVersion();
 /// it; "unknown" outside git.
 const char* GitHash();
 
-/// Versions of the libraries that this folder uses, by lower-case name. Whoever composes a run adds
-/// those that other folders own.
+/// "gcc 12.2.0", "clang 14.0.6".
+std::string Compiler();
+
+/// Versions of the libraries that a result depends on, by lower-case name: of those built from
+/// headers what was compiled in, of shared ones that of the file that is loaded, where it names
+/// one. Whoever composes a run adds those that cannot be found so.
 std::map<std::string, std::string> BuildLibraries();
 
 }  // namespace pregrasp

@@ -38,7 +38,10 @@ Json ManifestFields(const RunInfo& info, const nlohmann::json& configuration) {
   libraries.insert(info.libraries.begin(), info.libraries.end());
   return {{"planner_version", ProgramVersion()},
           {"git_hash", GitHash()},
+          {"program_sha256", Sha256OfProgram()},
+          {"compiler", Compiler()},
           {"libraries", libraries},
+          {"inputs", info.inputs},
           {"command", info.command},
           {"scene_file", info.scene_file},
           {"seed", info.seed},

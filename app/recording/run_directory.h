@@ -20,6 +20,8 @@ struct RunInfo {  // NOLINT(bugprone-exception-escape): moving JSON does not thr
   /// Versions of libraries this folder cannot ask for itself ("simbody", "fcl", "assimp", "mesa");
   /// added to those it can (BuildLibraries).
   std::map<std::string, std::string> libraries;
+  /// SHA-256 of the files beside the scene's that a result depends on, by name: weights, the hand.
+  std::map<std::string, std::string> inputs;
   std::string command;     ///< the command line that makes the run again; may be empty
   std::string scene_file;  ///< as the user gave it; may be empty
   /// The planner's fields before any command, by full name: what a replay begins with.

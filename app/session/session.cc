@@ -2,12 +2,26 @@
 
 #include <sys/resource.h>
 
+#include "app/core/data_folder.h"
 #include "app/core/error.h"
+#include "app/core/sha256.h"
 #include "app/job/planner_settings.h"
 #include "app/recording/partial_directory.h"
 
 namespace pregrasp {
 namespace {
+
+// Of what a result depends on beside the scene and the program, as far as it is there.
+std::map<std::string, std::string> HashInputs(const std::filesystem::path& weights) {
+  std::map<std::string, std::string> hashes;
+  for (const std::filesystem::path& file :
+       {weights / "score.safetensors", weights / "generator.safetensors",
+        DataFolder() / "assets" / "hand" / "shadow_right.urdf"}) {
+    std::error_code none;
+    if (std::filesystem::exists(file, none)) hashes[file.filename().string()] = Sha256OfFile(file);
+  }
+  return hashes;
+}
 
 double PeakMegabytes() {
   rusage usage{};
@@ -76,6 +90,7 @@ std::unique_ptr<Recorder> Session::OpenRecorder(const std::filesystem::path& dir
   info.dt = world().config().dt;
   info.command = config_.command;
   info.scene_file = SceneLabel(scene());
+  info.inputs = HashInputs(config_.weights);
   info.settings_at_start = PlannerSettings(config_.planner);
   auto recorder = std::make_unique<Recorder>(
       directory, *timeline_, config_.pictures.value_or(pictures), *drawer_, std::move(info));

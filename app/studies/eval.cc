@@ -79,7 +79,7 @@ std::string Describe(const EvalConfig& config, std::int64_t items) {
   json["items"] = items;
   json["version"] = ProgramVersion();
   json["git"] = GitHash();
-  json["program"] = Sha256OfFile("/proc/self/exe");
+  json["program"] = Sha256OfProgram();
   json["first_seed"] = setup.first_seed;
   json["seeds"] = setup.seeds;
   json["paths"] = setup.run.paths;

@@ -166,7 +166,7 @@ class Climb {
     const ContactNode& node = graph_.nodes().at(path.nodes.front());
     facts.thumb = node.thumb;
     facts.index = node.index;
-    const Certificate certificate = planner_->Certify(mppi, state);
+    const Certificate certificate = planner_->Certify(mppi, state.plans.front());
     const auto X_WB = job_.world().GetPoses(certificate.full.end);
     facts.progress = oracle.Score(std::vector<ScoredState>{{X_WB, {}}}).front();
     facts.certified = certificate.certified;

@@ -82,8 +82,9 @@ std::string ShowRuns(const fs::path& runs, const fs::path& pictures, const std::
 
 void WriteReport(const std::vector<fs::path>& folders, const fs::path& file) {
   std::string text = "# Results\n\nMade by `pregrasp eval report";
-  for (const fs::path& folder : folders) text += " " + folder.string();
-  text += " --out " + file.string() + "`; the tables are what `pregrasp eval` left there.\n";
+  for (const fs::path& folder : folders) text += fmt::format(" {}", folder.string());
+  text +=
+      fmt::format(" --out {}`; the tables are what `pregrasp eval` left there.\n", file.string());
   for (const fs::path& folder : folders) {
     const fs::path description_file = folder / "items" / "description.json";
     const nlohmann::json description =

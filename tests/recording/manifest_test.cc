@@ -37,6 +37,9 @@ TEST_F(ManifestTest, EveryFileIsListedWithItsHash) {
   EXPECT_EQ(manifest["libraries"]["simbody"], "3.7");
   EXPECT_TRUE(manifest["libraries"].contains("mrpt"));
   EXPECT_TRUE(manifest.contains("git_hash"));
+  EXPECT_EQ(manifest["program_sha256"], Sha256OfFile("/proc/self/exe"));
+  EXPECT_EQ(manifest["libraries"]["fcl"].get<std::string>().find("0."), 0U);
+  EXPECT_EQ(manifest["inputs"]["score.safetensors"], std::string(64, 'a'));
   const std::vector<std::string> files = ListRunFiles(run_).files;
   EXPECT_EQ(files.size(), 16U);
   EXPECT_EQ(manifest["files"].size(), files.size());

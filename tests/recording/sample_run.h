@@ -139,6 +139,7 @@ inline void WriteSampleRun(const std::filesystem::path& directory, int steps = 5
   RunInfo info;
   info.seed = seed;
   info.libraries = {{"simbody", "3.7"}};
+  info.inputs = {{"score.safetensors", std::string(64, 'a')}};
   RunDirectory run(directory, SampleScene(seed), info);
   for (int i = 0; i < steps; ++i) {
     const StepFacts step = SampleStep(i, seed);
