@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "app/core/check.h"
@@ -31,18 +32,19 @@ double LadderProgress::CalcDistance(const Vector3& p_WO, const Quaternion& q_WO,
 double LadderProgress::Calc(const RigidTransform& X_WO) const {
   constexpr int kPoints = 20;  // on the way from one pose to the next: a hundredth of the way and
                                // less, for ladders of five poses
-  const double whole = rungs_.back().way;
-  double best = 0.0;
+  double nearest = std::numeric_limits<double>::infinity(), way = 0.0;
   for (std::size_t i = 1; i < rungs_.size(); ++i) {
     const Rung &a = rungs_[i - 1], &b = rungs_[i];
     for (int k = 0; k <= kPoints; ++k) {
       const double s = static_cast<double>(k) / kPoints;
       const double distance =
           CalcDistance(a.p_WO + s * (b.p_WO - a.p_WO), a.q_WO.slerp(s, b.q_WO), X_WO);
-      best = std::max(best, (a.way + s * (b.way - a.way) - distance) / whole);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      way = a.way + s * (b.way - a.way);
     }
   }
-  return best;
+  return std::max(0.0, (way - nearest) / rungs_.back().way);
 }
 
 std::vector<double> LadderOracle::Score(std::span<const ScoredState> states) const {

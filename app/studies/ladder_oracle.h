@@ -5,9 +5,9 @@
 
 namespace pregrasp {
 
-/// How far along a ladder a pose is, in [0, 1]: of all points on the way through the poses
-/// (straight lines, shortest turns), the largest share of the way done there, less the distance
-/// from it in shares of the whole way. 0 at the start and off the way, 1 at the last pose.
+/// How far along a ladder a pose is, in [0, 1]: the share of the way done at the nearest point of
+/// the way through the poses (straight lines, shortest turns), less the distance from it in shares
+/// of the whole way. 0 at the start and far off the way, 1 at the last pose.
 class LadderProgress {
  public:
   /// @param ladder  with poses that differ. @param radius  of the object about its origin [m]: a

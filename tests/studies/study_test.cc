@@ -11,8 +11,8 @@
 namespace pregrasp {
 namespace {
 
-nlohmann::json Row(const std::string& scene, int seed, const std::string& status, double r_suc,
-                   int n_paths, double seconds) {
+nlohmann::json Row(const std::string& scene, std::uint64_t seed, const std::string& status,
+                   double r_suc, int n_paths, double seconds) {
   return {{"scene", scene},
           {"seed", seed},
           {"status", status},
