@@ -1,10 +1,10 @@
 -- A computer keyboard lies deep in a shelf, with its back and both ends 1 cm from the walls: no finger fits
 -- behind it, and its front edge is far from the shelf's. Pushed against the wall, it can be tipped up.
-local parts = { { shape = box{0.130, 0.440, 0.0175}, p = {0, 0, -0.00125} } }
-for row = 0, 5 do  -- rows of keys, 2.5 mm high
+local parts = { { shape = box{0.130, 0.440, 0.0185}, p = {0, 0, -0.00075} } }
+for row = 0, 5 do  -- rows of keys, 1.5 mm high: too low to pinch by
   local x = -0.049 + 0.0195 * row
   for _, block in ipairs { { -0.074, 0.276 }, { 0.0955, 0.056 }, { 0.170, 0.076 } } do
-    parts[#parts + 1] = { shape = box{0.0165, block[2], 0.0025}, p = {x, block[1], 0.00875} }
+    parts[#parts + 1] = { shape = box{0.0165, block[2], 0.0015}, p = {x, block[1], 0.00925} }
   end
 end
 
