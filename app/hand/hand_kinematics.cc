@@ -67,6 +67,12 @@ void AddDirectionGradient(const HandModel& hand, const HandPose& pose, int link,
   }
 }
 
+HandVector HandUnits() {
+  HandVector units = HandVector::Constant(kUnitAngle);
+  units.head<3>().setConstant(kUnitPosition);
+  return units;
+}
+
 HandConfiguration Advance(const HandConfiguration& start, const HandVector& step) {
   HandConfiguration end;
   const Vector3 theta = step.segment<3>(3);

@@ -35,6 +35,11 @@ void AddPointGradient(const HandModel& hand, const HandPose& pose, int link, con
 void AddDirectionGradient(const HandModel& hand, const HandPose& pose, int link, const Vector3& d_W,
                           const Vector3& a_W, HandVector* gradient);
 
+/// One unit of every degree of freedom: what a step, a reference and the damping weigh it by.
+inline constexpr double kUnitPosition = 0.05;  ///< [m]
+inline constexpr double kUnitAngle = 0.5;      ///< [rad]
+HandVector HandUnits();
+
 /// The configuration that `step` leads to from `start`: p + dp, exp(theta x) R, q + dq. Joints are
 /// not clamped.
 HandConfiguration Advance(const HandConfiguration& start, const HandVector& step);

@@ -21,6 +21,7 @@ inline constexpr int kNumHandDofs = 6 + kNumHandJoints;
 using HandJoints = Eigen::Matrix<double, kNumHandJoints, 1>;
 /// A vector or a gradient over the hand's degrees of freedom.
 using HandVector = Eigen::Matrix<double, kNumHandDofs, 1>;
+using HandMatrix = Eigen::Matrix<double, kNumHandDofs, kNumHandDofs>;
 
 /// The vendor's joint names, palm to tip within a finger: the order of every joint vector.
 inline constexpr std::array<const char*, kNumHandJoints> kHandJointNames{

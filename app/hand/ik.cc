@@ -7,6 +7,7 @@
 #include "app/core/error.h"
 #include "app/core/text.h"
 #include "app/hand/certificate.h"
+#include "app/hand/ik_residuals.h"
 #include "app/hand/ik_terms.h"
 
 namespace pregrasp {
@@ -169,11 +170,12 @@ const char* IkMethodName(IkMethod method) {
 
 struct IkSolver::Impl {
   Impl(const HandModel& hand_in, const std::vector<const Shape*>& shapes)
-      : hand(hand_in), obstacles(shapes), certificate(hand_in, shapes) {}
+      : hand(hand_in), reach(hand_in), obstacles(shapes), certificate(hand_in, shapes) {}
 
   const HandObstacles* bodies() const { return obstacles.num_bodies() > 0 ? &obstacles : nullptr; }
 
   HandModel hand;
+  HandReach reach;
   HandObstacles obstacles;
   HandCertificate certificate;
 };
@@ -186,6 +188,10 @@ IkSolver::~IkSolver() = default;
 IkSolver::IkSolver(IkSolver&&) noexcept = default;
 
 const HandModel& IkSolver::hand() const { return impl_->hand; }
+
+WayResult IkSolver::CheckWay(const HandWay& way) const {
+  return pregrasp::CheckWay(impl_->hand, impl_->reach, impl_->bodies(), way);
+}
 
 IkResult IkSolver::Solve(const IkConfig& config, const IkProblem& problem, Rng rng) const {
   config.Validate();
@@ -229,6 +235,41 @@ IkResult IkSolver::Evaluate(const IkConfig& config, const IkProblem& problem,
     if (denied) result.status = IkStatus::kNotCertified;
   }
   return result;
+}
+
+struct IkResiduals::Impl {
+  Impl(const HandModel& hand, const HandObstacles* obstacles, const IkConfig& config_in,
+       const IkProblem& problem, double contact_weight)
+      : config(config_in), terms(hand, obstacles, config, problem) {
+    terms.contact_weight = contact_weight;
+  }
+
+  IkConfig config;  // that `terms` refers to
+  IkTerms terms;
+  IkPoint point;
+};
+
+IkResiduals::IkResiduals(const IkSolver& solver, const IkConfig& config, const IkProblem& problem,
+                         double contact_weight)
+    : impl_(std::make_unique<Impl>(solver.impl_->hand,
+                                   config.collision ? solver.impl_->bodies() : nullptr, config,
+                                   problem, contact_weight)) {}
+IkResiduals::~IkResiduals() = default;
+IkResiduals::IkResiduals(IkResiduals&&) noexcept = default;
+
+double IkResiduals::Evaluate(const HandConfiguration& configuration) {
+  impl_->point.configuration = configuration;
+  internal::EvaluatePoint(impl_->terms, internal::LeastSquaresInfluence(impl_->terms),
+                          &impl_->point);
+  return impl_->point.cost;
+}
+
+void IkResiduals::AddNormalEquations(HandMatrix* JtJ, HandVector* Jtr) const {
+  HandMatrix A;
+  HandVector b;
+  internal::CalcNormalEquations(impl_->terms, impl_->point, &A, &b);
+  *JtJ += A;
+  *Jtr += b;
 }
 
 }  // namespace pregrasp

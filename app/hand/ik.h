@@ -9,6 +9,7 @@
 #include "app/core/rng.h"
 #include "app/hand/distance.h"
 #include "app/hand/hand_model.h"
+#include "app/hand/way.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {
@@ -59,6 +60,9 @@ struct IkContact {
 struct IkProblem {
   /// None to five, no finger twice. None asks for a free pose near the reference.
   std::vector<IkContact> contacts;
+  /// Fingers without a contact that are on their way to one or from one: their distal links may
+  /// enter the object as far as those of contacting fingers.
+  std::array<bool, kNumFingers> may_touch{};
   /// One pose for each of the solver's bodies, the object first; not used without bodies.
   std::vector<RigidTransform> X_WB;
   /// The first start, before any random one.
@@ -136,9 +140,13 @@ class IkSolver {
   IkResult Evaluate(const IkConfig& config, const IkProblem& problem,
                     const HandConfiguration& configuration) const;
 
+  /// Whether the hand comes to no overlap on a way among the solver's bodies (CheckWay).
+  WayResult CheckWay(const HandWay& way) const;
+
   const HandModel& hand() const;
 
  private:
+  friend class IkResiduals;
   struct Impl;
   std::unique_ptr<const Impl> impl_;
 };

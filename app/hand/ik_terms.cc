@@ -44,12 +44,6 @@ void AddRow(const HandVector& gradient, double residual, HandMatrix* JtJ, HandVe
 
 }  // namespace
 
-HandVector HandUnits() {
-  HandVector units = HandVector::Constant(kUnitAngle);
-  units.head<3>().setConstant(kUnitPosition);
-  return units;
-}
-
 IkTerms::IkTerms(const HandModel& hand_in, const HandObstacles* obstacles_in,
                  const IkConfig& config_in, const IkProblem& problem)
     : hand(hand_in), obstacles(obstacles_in), config(config_in) {
@@ -65,6 +59,7 @@ IkTerms::IkTerms(const HandModel& hand_in, const HandObstacles* obstacles_in,
     contacts[num_contacts++] = {contact.finger, tip.link, tip.p_LT,
                                 contact.p_WC + tip.radius * contact.nhat_W, contact.nhat_W};
   }
+  for (int f = 0; f < kNumFingers; ++f) touch.touching[f] |= problem.may_touch[f];
   has_reference = problem.reference.has_value();
   if (has_reference) {
     reference = *problem.reference;
@@ -95,7 +90,8 @@ double CalcContactCost(const IkTerms& terms, IkPoint* point) {
     point->cosines[i] = cosine;
     point->max_tip_error = std::max(point->max_tip_error, error);
     point->min_cosine = std::min(point->min_cosine, cosine);
-    task += Square(error / kSigmaLength) + Square(ConeResidual(terms, cosine));
+    task +=
+        terms.contact_weight * (Square(error / kSigmaLength) + Square(ConeResidual(terms, cosine)));
     preference += Square(PadResidual(Dorsal(contact, pose)));
   }
   const HandVector deviation = CalcDeviation(terms, point->configuration);
@@ -141,20 +137,22 @@ void CalcNormalEquations(const IkTerms& terms, const IkPoint& point, HandMatrix*
   JtJ->diagonal() = terms.reference_weights;
   *Jtr = terms.reference_weights.cwiseProduct(CalcDeviation(terms, point.configuration));
   HandVector row;
+  const double sharpness = std::sqrt(terms.contact_weight);
   for (int i = 0; i < terms.num_contacts; ++i) {
     const IkTerms::Contact& contact = terms.contacts[i];
     const Vector3 p_WT = pose.CalcPoint(contact.link, contact.p_LT);
-    const Vector3 residual = (p_WT - contact.p_WTarget) / kSigmaLength;
+    const double per_length = sharpness / kSigmaLength;
+    const Vector3 residual = per_length * (p_WT - contact.p_WTarget);
     for (int k = 0; k < 3; ++k) {
       row.setZero();
-      AddPointGradient(terms.hand, pose, contact.link, p_WT, Vector3::Unit(k) / kSigmaLength, &row);
+      AddPointGradient(terms.hand, pose, contact.link, p_WT, per_length * Vector3::Unit(k), &row);
       AddRow(row, residual[k], JtJ, Jtr);
     }
     if (const double cone = ConeResidual(terms, point.cosines[i]); cone > 0.0) {
       row.setZero();
       AddDirectionGradient(terms.hand, pose, contact.link, pose.R_WL[contact.link].col(2),
-                           contact.nhat_W / kSigmaCone, &row);
-      AddRow(row, cone, JtJ, Jtr);
+                           sharpness / kSigmaCone * contact.nhat_W, &row);
+      AddRow(row, sharpness * cone, JtJ, Jtr);
     }
     if (const double pad = PadResidual(Dorsal(contact, pose)); pad > 0.0) {
       row.setZero();

@@ -9,11 +9,6 @@
 
 namespace pregrasp::internal {
 
-/// One unit of every degree of freedom: what a step, a reference and the damping weigh it by.
-inline constexpr double kUnitPosition = 0.05;  ///< [m]
-inline constexpr double kUnitAngle = 0.5;      ///< [rad]
-HandVector HandUnits();
-
 /// Standard deviations of the residuals: 1 mm of a tip or of clearance weighs as much as .05 of a
 /// cone's cosine (measured: they make most first starts succeed).
 inline constexpr double kSigmaLength = 1e-3;  ///< [m]
@@ -48,6 +43,7 @@ struct IkTerms {
   std::array<Contact, kNumFingers> contacts;
   int num_contacts = 0;
   double least_cosine = 0.5;
+  double contact_weight = 1.0;  ///< of the squares of tips and cones
   bool has_reference = false;
   HandConfiguration reference;   ///< its joints are the posture if there is no reference
   HandVector reference_weights;  ///< of the squared deviation of each degree of freedom
@@ -83,8 +79,6 @@ void EvaluatePoint(const IkTerms& terms, double influence, IkPoint* point);
 inline double LeastSquaresInfluence(const IkTerms& terms) {
   return terms.config.min_clearance + terms.config.clearance_buffer;
 }
-
-using HandMatrix = Eigen::Matrix<double, kNumHandDofs, kNumHandDofs>;
 
 /// Gauss-Newton's J^T J (lower half) and J^T r of `point->cost` (= r^T r).
 void CalcNormalEquations(const IkTerms& terms, const IkPoint& point, HandMatrix* JtJ,

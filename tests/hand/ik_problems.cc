@@ -75,15 +75,15 @@ PlacedObject MakeObject(IkObject kind, Rng& rng) {
   }
 }
 
-struct World {
+struct ShapeWorld {
   std::vector<Shape> shapes;
   std::vector<RigidTransform> X_WB;
 };
 
-World MakeWorld(IkObject kind, bool clutter, Rng& rng) {
+ShapeWorld MakeShapeWorld(IkObject kind, bool clutter, Rng& rng) {
   PlacedObject object = MakeObject(kind, rng);
-  World world{{std::move(object.shape), Box{{1.6, 1.6, 0.02}}},
-              {object.X_WO, Turned(0.0, {0.0, 0.0, -0.01})}};
+  ShapeWorld world{{std::move(object.shape), Box{{1.6, 1.6, 0.02}}},
+                   {object.X_WO, Turned(0.0, {0.0, 0.0, -0.01})}};
   if (!clutter) return world;
   const double gap = rng.Uniform(0.005, 0.05);
   const double yaw = rng.Uniform(0.0, 2.0 * kPi);
@@ -135,7 +135,7 @@ HandJoints ClosedPosture(const HandModel& hand, const HandJoints& open, Rng& rng
 
 class Closer {
  public:
-  Closer(const HandModel& hand, const World& world)
+  Closer(const HandModel& hand, const ShapeWorld& world)
       : hand_(hand),
         obstacles_(Pointers(world)),
         placed_(obstacles_.Place(world.X_WB)),
@@ -219,7 +219,7 @@ class Closer {
   }
 
  private:
-  static std::vector<const Shape*> Pointers(const World& world) {
+  static std::vector<const Shape*> Pointers(const ShapeWorld& world) {
     std::vector<const Shape*> out;
     for (const Shape& shape : world.shapes) out.push_back(&shape);
     return out;
@@ -247,7 +247,7 @@ RigidTransform SamplePalm(const Closer& closer, Rng& rng) {
   return MakeTransform(R_WH, p_WP - R_WH * p_HP);
 }
 
-std::optional<SolvableProblem> TryHand(const World& world, const Closer& closer, int fingers,
+std::optional<SolvableProblem> TryHand(const ShapeWorld& world, const Closer& closer, int fingers,
                                        Rng& rng) {
   const HandModel& hand = ShadowHand();
   HandConfiguration configuration;
@@ -328,7 +328,7 @@ TriangleMesh MakeBumpyMesh(double size, Rng& rng) {
 SolvableProblem MakeSolvableProblem(IkObject object, int fingers, bool clutter, Rng& rng) {
   constexpr int kHandsPerWorld = 2000;
   while (true) {
-    const World world = MakeWorld(object, clutter, rng);
+    const ShapeWorld world = MakeShapeWorld(object, clutter, rng);
     const Closer closer(ShadowHand(), world);
     for (int i = 0; i < kHandsPerWorld; ++i) {
       if (auto solvable = TryHand(world, closer, fingers, rng)) return std::move(*solvable);
