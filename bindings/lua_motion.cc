@@ -10,15 +10,16 @@
 namespace pregrasp {
 namespace {
 
-const Schema kMotionSummary{"MotionSummary",
-                            {"frames", "failed", "loosened", "max_tip_error_mm", "min_clearance_mm",
-                             "max_joint_speed", "max_wrist_speed"}};
+const Schema kMotionSummary{
+    "MotionSummary",
+    {"frames", "failed", "blocked_ways", "loosened", "max_tip_error_mm", "min_clearance_mm",
+     "max_joint_speed", "max_wrist_speed", "over_limits"}};
 
 constexpr int kMotionKib = 100;
 
 bool IsFinished(const LuaMotion& motion) {
   const auto state = motion.begun();
-  return state && state->motion_state->filled && state->motion_state->sweeps > 0;
+  return state && state->motion_state->finished;
 }
 
 int NumSolved(const LuaMotion& motion) {
@@ -29,7 +30,7 @@ int NumSolved(const LuaMotion& motion) {
 // Solves the next keyframe in order; false when all are.
 bool SolveNext(lua_State* L, LuaMotion& motion) {
   const auto state = motion.begun();
-  if (state && state->motion_state->solved_keys.size() == state->motion->task().keyframes.size()) {
+  if (state && state->motion_state->solved_keys.size() == state->motion_state->keys.size()) {
     return false;
   }
   motion.SolveKeyframe();
@@ -155,11 +156,13 @@ Pushed MotionSummaryOf(lua_State* L, LuaMotion& motion) {
   RecordWriter(L, kMotionSummary)
       .Set("frames", summary.frames)
       .Set("failed", summary.failed)
+      .Set("blocked_ways", summary.blocked_ways)
       .Set("loosened", summary.loosened)
       .Set("max_tip_error_mm", 1e3 * summary.max_tip_error)
       .Set("min_clearance_mm", 1e3 * summary.min_clearance)
-      .Set("max_joint_speed", summary.max_joint_speed)
-      .Set("max_wrist_speed", summary.max_wrist_speed);
+      .Set("max_joint_speed", summary.rates.joint_speed)
+      .Set("max_wrist_speed", summary.rates.wrist_speed)
+      .Set("over_limits", summary.over_limits);
   return {1};
 }
 
@@ -183,6 +186,7 @@ double FrameTime(LuaFrame& frame) { return frame.node->facts.t; }
 std::string FramePhase(LuaFrame& frame) { return frame.facts().phase; }
 std::string FrameLoosened(LuaFrame& frame) { return frame.facts().loosened; }
 bool FrameFailed(LuaFrame& frame) { return frame.facts().failed; }
+bool FrameWayClear(LuaFrame& frame) { return frame.facts().way_clear; }
 double FrameTipError(LuaFrame& frame) { return frame.facts().tip_error_mm; }
 double FrameClearance(LuaFrame& frame) { return frame.facts().clearance_mm; }
 std::string FrameStepId(LuaFrame& frame) { return frame.node->id(); }
@@ -218,7 +222,7 @@ int FrameToString(lua_State* L) {
 }  // namespace
 
 MotionTask LuaMotion::GetTask() const {
-  if (const auto state = begun()) return state->motion->task();
+  if (const auto state = begun()) return *state->motion_state->task;
   const auto state = this->state();
   PlannerConfig config = state->config;
   ApplySettings(settings, config);
@@ -278,6 +282,7 @@ const ClassInfo& FrameClass() {
                                   Property<&FramePhase>("phase"),
                                   Property<&FrameLoosened>("loosened"),
                                   Property<&FrameFailed>("failed"),
+                                  Property<&FrameWayClear>("way_clear"),
                                   Property<&FrameTipError>("tip_error_mm"),
                                   Property<&FrameClearance>("clearance_mm"),
                                   Property<&FramePalm>("X_WH"),

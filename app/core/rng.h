@@ -53,6 +53,11 @@ enum class RngStream : std::uint8_t {
   kRefinedGraspIk,
   kGraspRoom,
   kGraspRoomKept,
+  kMotionKey,
+  kMotionApproach,
+  kMotionFrame,
+  kMotionDetour,
+  kMotionPolish,
 };
 
 /// Counter-based generator: Philox4x64-10 (Salmon et al., "Parallel random numbers: as easy as 1,

@@ -32,20 +32,18 @@ WorldState StateOfFrame(const Application& a, const MotionFrameTask& task) {
   return state;
 }
 
-void SetFrameFacts(Application& a, int frame) {
-  const MotionFrameTask& task = a.next.motion->task().frames.at(frame);
-  const MotionFrame& solved = a.next.motion_state->frames.at(frame);
+void SetFrameFacts(Application& a, const MotionFrameTask& task, const MotionFrame& solved,
+                   int frame, int keyframe) {
   SetWorldFacts(a.facts, a.job.world(), StateOfFrame(a, task), {});
   FrameFacts facts;
   facts.path = a.next.path->rank;
   facts.grasp = a.next.chosen_grasp;
   facts.frame = frame + 1;
-  const std::vector<int>& keyframes = a.next.motion->task().keyframes;
-  const auto key = std::find(keyframes.begin(), keyframes.end(), frame);
-  if (key != keyframes.end()) facts.keyframe = static_cast<int>(key - keyframes.begin()) + 1;
+  facts.keyframe = keyframe + 1;
   facts.phase = MotionPhaseName(task.phase);
   facts.loosened = LooseningRungName(solved.rung);
-  facts.failed = solved.rung == LooseningRung::kFailed;
+  facts.failed = solved.failed();
+  facts.way_clear = solved.way_clear;
   facts.tip_error_mm = 1e3 * solved.tip_error;
   facts.clearance_mm = 1e3 * solved.clearance;
   facts.hand = MakeHandFacts(solved.configuration);
@@ -81,10 +79,23 @@ void SolveKeyframe(Application& a) {
   Require(a.next.motion != nullptr, "the grasp that the motion ends in", "none");
   MotionState state = *a.next.motion_state;
   Require(a.next.motion->SolveKeyframe(state), "a keyframe that is left", "none");
-  const int frame = state.solved_keys.back();
+  const int key = state.solved_keys.back();
+  const int frame = state.task->keyframes[key];
+  SetFrameFacts(a, state.task->frames[frame], state.keys[key], frame, key);
   a.next.motion_state = std::make_shared<const MotionState>(std::move(state));
-  SetFrameFacts(a, frame);
-  a.facts.id = fmt::format("motion.key.{}", std::get<FrameFacts>(a.facts.details).keyframe);
+  a.facts.id = fmt::format("motion.key.{}", key + 1);
+}
+
+RatesFacts MakeRatesFacts(const char* phase, const HandRates& rates) {
+  return {phase,
+          rates.joint_speed,
+          rates.wrist_speed,
+          rates.wrist_turn_speed,
+          rates.joint_acceleration,
+          rates.wrist_acceleration,
+          rates.wrist_turn_acceleration,
+          rates.speed_share,
+          rates.acceleration_share};
 }
 
 void SetMotionFacts(Application& a) {
@@ -97,16 +108,25 @@ void SetMotionFacts(Application& a) {
   facts.loosened = summary.loosened;
   facts.max_tip_error_mm = 1e3 * summary.max_tip_error;
   facts.min_clearance_mm = 1e3 * summary.min_clearance;
-  facts.max_joint_speed = summary.max_joint_speed;
-  facts.max_wrist_speed = summary.max_wrist_speed;
+  facts.blocked_ways = summary.blocked_ways;
+  facts.seconds = a.next.motion_state->task->frames.back().t;
+  facts.over_limits = summary.over_limits;
+  facts.rates = MakeRatesFacts("whole", summary.rates);
+  for (int phase = 0; phase < kNumMotionPhases; ++phase) {
+    facts.phases.push_back(MakeRatesFacts(MotionPhaseName(static_cast<MotionPhase>(phase)),
+                                          summary.phase_rates[phase]));
+  }
+  for (const DetourKind kind : a.next.motion_state->detours) {
+    facts.ways.emplace_back(DetourKindName(kind));
+  }
   facts.order = KeyframeOrderName(a.next.motion->config().order);
   a.facts.details = std::move(facts);
 }
 
 void Fill(Application& a) {
-  Require(a.next.motion &&
-              a.next.motion_state->solved_keys.size() == a.next.motion->task().keyframes.size(),
-          "a motion with all keyframes", "one without");
+  Require(
+      a.next.motion && a.next.motion_state->solved_keys.size() == a.next.motion_state->keys.size(),
+      "a motion with all keyframes", "one without");
   Require(!a.next.motion_state->filled, "a motion without its in-betweens", "one with them");
   MotionState state = *a.next.motion_state;
   a.next.motion->FillInBetweens(state);
@@ -118,7 +138,7 @@ void Fill(Application& a) {
 void Smooth(Application& a) {
   Require(a.next.motion && a.next.motion_state->filled, "a motion with its in-betweens",
           "one without");
-  Require(a.next.motion_state->sweeps == 0, "a motion that is not smoothed", "one that is");
+  Require(!a.next.motion_state->finished, "a motion that is not smoothed", "one that is");
   MotionState state = *a.next.motion_state;
   a.next.motion->Finish(state);
   a.next.motion_state = std::make_shared<const MotionState>(std::move(state));
@@ -134,7 +154,11 @@ void ShowFrame(Application& a) {
     throw InputError("", "frame", fmt::format("1 to {}", count), std::to_string(frame));
   }
   a.facts.id = fmt::format("motion.frame.{}", frame);
-  SetFrameFacts(a, frame - 1);
+  const std::vector<int>& keyframes = a.next.motion_state->task->keyframes;
+  const auto key = std::find(keyframes.begin(), keyframes.end(), frame - 1);
+  SetFrameFacts(a, a.next.motion_state->task->frames[frame - 1],
+                a.next.motion_state->frames[frame - 1], frame - 1,
+                key == keyframes.end() ? -1 : static_cast<int>(key - keyframes.begin()));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ enum class Verb {
   kLift,      ///< the simulated lift of grasp {grasp}
   kKeyframe,  ///< the next keyframe of the motion that ends in grasp {grasp}
   kFill,      ///< the frames between the keyframes
-  kSmooth,    ///< the smoothing of the motion
+  kSmooth,    ///< the smoothing, timing and checking of the motion
   kFrame,     ///< frame {frame} of the finished motion, as it is
   kTouch,     ///< put {finger} on the object at {p_OC}
   kLetGo,     ///< take {finger} off

@@ -49,8 +49,7 @@ Progress CalcProgress(const JobState& state) {
   if (progress.feasible > 0) progress.reached = Reached::kFeasible;
   for (const auto& [number, lift] : state.lifts) progress.lifted += lift->held ? 1 : 0;
   if (progress.lifted > 0) progress.reached = Reached::kLifted;
-  const bool finished = state.motion && state.motion_state->filled &&
-                        state.motion_state->sweeps >= state.motion->config().smoothing_sweeps;
+  const bool finished = state.motion && state.motion_state->finished;
   if (finished && state.lifts.at(state.chosen_grasp)->held &&
       state.motion->Summarize(*state.motion_state).failed == 0) {
     const bool disturbed = state.certificate->neighbours.disturbed ||

@@ -256,8 +256,8 @@ std::vector<std::optional<LiftResult>> Planner::LiftGrasps(const Certificate& ce
 HandMotion Planner::MakeMotion(const Certificate& certificate, const GraspResult& grasp,
                                const LiftResult& lift, const MotionConfig& config) const {
   PREGRASP_CHECK(grasp.kinematics.has_value());
-  MotionTask task =
-      BuildMotionTask(*world_, certificate.trace, {lift.trace, lift.lift_t}, config_.motion_timing);
+  MotionTask task = BuildMotionTask(
+      *world_, certificate.trace, {lift.trace, lift.closing_t, lift.lift_t}, config_.motion_timing);
   return {grasp_world_->ik(), std::move(task), grasp.kinematics->ik.configuration(), config, seed_};
 }
 

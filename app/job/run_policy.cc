@@ -288,7 +288,7 @@ const Node& FinishMotion(Timeline& timeline, const Node& node, nlohmann::json op
     options = nlohmann::json::object();
   }
   if (!timeline.GetState(*at)->motion_state->filled) at = &timeline.Do(*at, Verb::kFill);
-  if (timeline.GetState(*at)->motion_state->sweeps == 0) at = &timeline.Do(*at, Verb::kSmooth);
+  if (!timeline.GetState(*at)->motion_state->finished) at = &timeline.Do(*at, Verb::kSmooth);
   return *at;
 }
 

@@ -46,8 +46,7 @@ bool AllFeasibleLifted(const JobState& state) {
 }
 
 bool IsMotionFinished(const JobState& state) {
-  return state.motion && state.motion_state->filled &&
-         state.motion_state->sweeps >= state.motion->config().smoothing_sweeps;
+  return state.motion && state.motion_state->finished;
 }
 
 void FillTrajectory(const JobState& state, const Node& node, RunSummary& summary) {
@@ -156,8 +155,8 @@ void FillMotion(const JobState& state, RunSummary& summary) {
   summary.motion.loosened = facts.loosened;
   summary.motion.max_tip_error_mm = 1e3 * facts.max_tip_error;
   summary.motion.min_clearance_mm = 1e3 * facts.min_clearance;
-  summary.motion.max_joint_speed = facts.max_joint_speed;
-  summary.motion.max_wrist_speed = facts.max_wrist_speed;
+  summary.motion.max_joint_speed = facts.rates.joint_speed;
+  summary.motion.max_wrist_speed = facts.rates.wrist_speed;
   summary.motion.order = KeyframeOrderName(state.motion->config().order);
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "app/motion/detour.h"
+#include "app/motion/hand_limits.h"
 #include "app/motion/motion_task.h"
+#include "app/motion/smooth_motion.h"
 
 namespace pregrasp {
 
@@ -24,16 +28,26 @@ enum class LooseningRung {
   kConeOff,       ///< no cones
   kDepth3mm,      ///< contacting distal links up to 3 mm in the object
   kClearance1mm,  ///< up to 1 mm of overlap of the hand with itself and the object
-  kFailed,        ///< not even so: the frame shows the best attempt
+  kFailed,        ///< not even so, or the way to it is not free: it shows the best attempt
 };
+inline constexpr int kNumLooseningRungs = 7;
 const char* LooseningRungName(LooseningRung rung);
+/// What a frame on a rung asks for.
+IkConfig LoosenIk(IkConfig config, LooseningRung rung);
 
 struct MotionConfig {
   KeyframeOrder order = KeyframeOrder::kReverse;
   double approach_distance = 0.20;  ///< how far off the palm starts [m]
   int keyframe_starts = 25;         ///< restarts of inverse kinematics at a keyframe
   int frame_starts = 4;             ///< and at a frame in between
-  int smoothing_sweeps = 6;         ///< each frame drawn to the mean of its neighbours
+  /// How much room is asked for while a motion is smoothed [m]: what smoothing leaves of it, and
+  /// what curved ways between frames take, is still some.
+  double smoothing_clearance = 1.6e-3;
+  /// Free parts are given the time in which the hand keeps to this share of its limits.
+  double pace = 0.9;
+  HandLimits limits;
+  SmoothingConfig smoothing;
+  DetourConfig detour;
   IkConfig ik;
 };
 
@@ -42,30 +56,47 @@ struct MotionFrame {
   HandConfiguration configuration;
   bool solved = false;  ///< has been computed at all
   LooseningRung rung = LooseningRung::kNone;
-  double tip_error = 0.0;  ///< [m]
-  double clearance = 0.0;  ///< [m], at most kClearanceSeen
-  IkMethod method = IkMethod::kNone;
+  /// The way from the frame before is free of overlap (CheckWay).
+  bool way_clear = true;
+  double tip_error = 0.0;             ///< [m]
+  double clearance = 0.0;             ///< [m], at most kClearanceSeen
+  IkMethod method = IkMethod::kNone;  ///< of what smoothing began with
+
+  bool failed() const { return !solved || rung == LooseningRung::kFailed || !way_clear; }
 };
 
 /// Everything known about a motion so far: a copyable value.
 struct MotionState {
-  std::vector<MotionFrame> frames;
-  std::vector<int> solved_keys;  ///< frame indices, in the order of solving
-  bool filled = false;           ///< in-betweens done
-  int sweeps = 0;                ///< smoothing sweeps done
+  /// Laid out as it stands: with the in-betweens, free parts get the time that the hand needs.
+  std::shared_ptr<const MotionTask> task;
+  std::vector<MotionFrame> keys;    ///< by keyframe
+  std::vector<int> solved_keys;     ///< of these, in the order of solving
+  std::vector<MotionFrame> frames;  ///< of the task, once filled
+  std::vector<DetourKind> detours;  ///< of free intervals and transits, in time, once filled
+  bool filled = false;              ///< in-betweens done
+  bool finished = false;            ///< smoothed, timed and checked
+  int iterations = 0;               ///< of smoothing
 };
 
-/// Facts about a finished motion.
+std::vector<HandConfiguration> ConfigurationsOf(const std::vector<MotionFrame>& frames);
+
+/// Facts about a filled motion.
 struct MotionSummary {
-  int frames = 0, failed = 0, loosened = 0;
-  double max_tip_error = 0.0;    ///< [m]
-  double min_clearance = 0.0;    ///< [m]
-  double max_joint_speed = 0.0;  ///< [rad/s]
-  double max_wrist_speed = 0.0;  ///< [m/s]
+  int frames = 0;
+  int failed = 0;        ///< without a pose, or with a way to it that goes through something
+  int blocked_ways = 0;  ///< of these, the latter
+  int loosened = 0;
+  double max_tip_error = 0.0;  ///< [m]
+  double min_clearance = 0.0;  ///< [m]
+  HandRates rates;
+  std::array<HandRates, kNumMotionPhases> phase_rates;
+  int over_limits = 0;  ///< frames at which a limit is exceeded
 };
 
-/// Turns a task into hand poses: keyframes in the configured order, in-betweens around their
-/// interpolation, smoothing, each frame certified (paper, section "Hand motion synthesis").
+/// Turns a task into hand poses (paper, section "Hand motion synthesis", and more): keyframes in
+/// the configured order; in-betweens, in free parts along a way without collision; then the motion
+/// as a whole is smoothed, its free parts timed, and every frame and every way between two
+/// certified.
 class HandMotion {
  public:
   /// @param solver  for the scene's bodies; outlives this.
@@ -78,23 +109,32 @@ class HandMotion {
   bool SolveKeyframe(MotionState& state) const;
   /// Needs all keyframes.
   void FillInBetweens(MotionState& state) const;
+  /// Needs the in-betweens; smooths, times the free parts and checks.
   void Smooth(MotionState& state) const;
   /// All of the above that is still to do.
   void Finish(MotionState& state) const;
 
   MotionSummary Summarize(const MotionState& state) const;
 
-  const MotionTask& task() const { return task_; }
+  /// As it is at the start: free intervals have one step.
+  const MotionTask& task() const { return *task_; }
   const MotionConfig& config() const { return config_; }
 
  private:
-  MotionFrame SolveFrame(int frame, const HandConfiguration& warm_start,
-                         const HandConfiguration& reference, int starts) const;
+  MotionFrame SolveFrame(const MotionFrameTask& task, const HandConfiguration& warm_start,
+                         const HandConfiguration& reference, int starts, const Rng& rng) const;
+  MotionFrame SolveStrictly(const MotionFrameTask& task, const HandConfiguration& warm_start,
+                            const HandConfiguration& reference, const Rng& rng) const;
   MotionFrame SolveApproachStart(const HandConfiguration& first_contact) const;
+  DetourProblem MakeDetour(const MotionFrameTask& begin, const MotionFrameTask& end,
+                           const HandConfiguration& from, const HandConfiguration& to) const;
   std::vector<int> KeyframeSequence() const;
+  bool IsIdle(const MotionTask& task, int interval) const;
+  void FillAlongWay(MotionState& state, int interval) const;
+  void FillTimed(MotionState& state, int interval) const;
 
   const IkSolver& solver_;
-  MotionTask task_;
+  std::shared_ptr<const MotionTask> task_;
   HandConfiguration grasp_;
   MotionConfig config_;
   std::uint64_t seed_;

@@ -9,8 +9,15 @@
 namespace pregrasp {
 namespace {
 
-std::array<Placement::Contact, kNumFingers> ContactsOf(const WorldState& state) {
-  std::array<Placement::Contact, kNumFingers> contacts{};
+using Contacts = std::array<Placement::Contact, kNumFingers>;
+
+constexpr double kStill = 1e-4;        // a body that moves less than this stands [m]
+constexpr double kStillDeg = 0.1;      // and turns less than this [degrees]
+constexpr double kSameContact = 2e-3;  // a finger keeps its contact if it is this near [m]
+constexpr int kMaxPosesOfWay = 9;      // from one frame to the next
+
+Contacts ContactsOf(const WorldState& state) {
+  Contacts contacts{};
   for (int j = 0; j < kNumFingers; ++j) {
     const FingertipState& tip = state.fingers[j];
     contacts[j] = {tip.on, tip.p_OC, tip.nhat_O};
@@ -18,106 +25,197 @@ std::array<Placement::Contact, kNumFingers> ContactsOf(const WorldState& state) 
   return contacts;
 }
 
-bool SameFingers(const std::array<Placement::Contact, kNumFingers>& a,
-                 const std::array<Placement::Contact, kNumFingers>& b) {
+bool AnyOn(const Contacts& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(), [](const auto& c) { return c.on; });
+}
+
+bool SameFingers(const Contacts& a, const Contacts& b) {
   for (int j = 0; j < kNumFingers; ++j) {
     if (a[j].on != b[j].on) return false;
+    if (a[j].on && (a[j].p_OC - b[j].p_OC).norm() > 5.0 * kSameContact) return false;
   }
   return true;
 }
 
-int FramesIn(double seconds, double fps) {
-  constexpr double kMaxFrames = 1e6;
-  PREGRASP_CHECK(seconds >= 0.0 && seconds * fps <= kMaxFrames, seconds, fps);
-  return std::max(1, static_cast<int>(std::lround(seconds * fps)));
+// The contacts of `a` that `b` has too.
+Contacts Shared(const Contacts& a, const Contacts& b) {
+  Contacts shared{};
+  for (int j = 0; j < kNumFingers; ++j) {
+    if (a[j].on && b[j].on && (a[j].p_OC - b[j].p_OC).norm() < kSameContact) shared[j] = a[j];
+  }
+  return shared;
 }
 
-// The row nearest to time t.
-const TraceRow& RowAt(const std::vector<TraceRow>& trace, double t) {
-  const auto later =
-      std::lower_bound(trace.begin(), trace.end(), t,
-                       [](const TraceRow& row, double seconds) { return row.state.t < seconds; });
-  if (later == trace.begin()) return trace.front();
-  if (later == trace.end()) return trace.back();
-  const auto earlier = later - 1;
-  return t - earlier->state.t < later->state.t - t ? *earlier : *later;
+// Rows of a simulation between two times.
+class Rows {
+ public:
+  Rows(const std::vector<TraceRow>& trace, double begin, double end) : trace_(trace) {
+    first_ = IndexAt(begin);
+    last_ = IndexAt(end);
+  }
+
+  int first() const { return first_; }
+  int last() const { return last_; }
+  double seconds() const { return trace_[last_].state.t - trace_[first_].state.t; }
+  // Of `count` steps that the time is divided into, the row at the i-th.
+  int AtStep(int i, int count) const {
+    const double t = trace_[first_].state.t + seconds() * i / count;
+    return std::clamp(IndexAt(t), first_, last_);
+  }
+  const WorldState& operator[](int row) const { return trace_[row].state; }
+
+ private:
+  // The row nearest to time t.
+  int IndexAt(double t) const {
+    const auto later =
+        std::lower_bound(trace_.begin(), trace_.end(), t,
+                         [](const TraceRow& row, double seconds) { return row.state.t < seconds; });
+    const int index = static_cast<int>(later - trace_.begin());
+    if (index == 0) return 0;
+    if (later == trace_.end()) return index - 1;
+    return t - trace_[index - 1].state.t < later->state.t - t ? index - 1 : index;
+  }
+
+  const std::vector<TraceRow>& trace_;
+  int first_ = 0, last_ = 0;
+};
+
+// From when on nothing moves to the trace's end, and no finger changes [s].
+double FindStill(const std::vector<TraceRow>& trace) {
+  const WorldState& end = trace.back().state;
+  const Contacts contacts = ContactsOf(end);
+  double still = end.t;
+  for (auto row = trace.rbegin(); row != trace.rend(); ++row) {
+    for (std::size_t i = 0; i < end.bodies.size(); ++i) {
+      const BodyState &a = row->state.bodies[i], &b = end.bodies[i];
+      if (!((a.p_WB - b.p_WB).norm() <= kStill) ||
+          !(RadToDeg(a.q_WB.angularDistance(b.q_WB)) <= kStillDeg)) {
+        return still;
+      }
+    }
+    if (!SameFingers(ContactsOf(row->state), contacts)) return still;
+    still = row->state.t;
+  }
+  return still;
 }
+
+class TaskBuilder {
+ public:
+  TaskBuilder(const World& world, double fps) : world_(world) { task_.fps = fps; }
+
+  void Add(MotionPhase phase, const WorldState& state, const Contacts& contacts) {
+    MotionFrameTask frame;
+    frame.t = static_cast<double>(task_.frames.size()) / task_.fps;
+    frame.phase = phase;
+    frame.X_WB = world_.GetPoses(state);
+    frame.contacts = contacts;
+    if (!task_.frames.empty()) frame.X_WB_way = {frame.X_WB};
+    task_.frames.push_back(std::move(frame));
+  }
+
+  // The last frame is a keyframe; what led to it is free or not.
+  void MarkKey(bool free) {
+    const int last = static_cast<int>(task_.frames.size()) - 1;
+    if (!task_.keyframes.empty() && task_.keyframes.back() == last) return;
+    if (!task_.keyframes.empty()) task_.is_free.push_back(free);
+    task_.keyframes.push_back(last);
+  }
+
+  // The rows at the speed of the physics, without the first, at which the last frame is.
+  void AddRows(MotionPhase phase, const Rows& rows) {
+    const int count = std::max(1, static_cast<int>(std::lround(rows.seconds() * task_.fps)));
+    int before = rows.first();
+    for (int i = 1; i <= count; ++i) {
+      const int row = rows.AtStep(i, count);
+      const Contacts contacts = ContactsOf(rows[row]);
+      const bool is_transit = phase == MotionPhase::kContact && !AnyOn(contacts);
+      // Keyframes are where fingers touch; without any, the way to the next contact decides.
+      const bool changes = !SameFingers(contacts, task_.frames.back().contacts);
+      if (changes && AnyOn(task_.frames.back().contacts)) MarkKey(false);
+      Add(is_transit ? MotionPhase::kTransit : phase, rows[row], contacts);
+      task_.frames.back().X_WB_way = WayPoses(rows, before, row);
+      if (i == count || (changes && AnyOn(contacts))) MarkKey(false);
+      before = row;
+    }
+  }
+
+  MotionTask Finish() {
+    for (const MotionFrameTask& frame : task_.frames) {
+      PREGRASP_CHECK(AreFinite(frame.t, frame.X_WB), frame.t);
+    }
+    return std::move(task_);
+  }
+
+  const MotionFrameTask& last() const { return task_.frames.back(); }
+
+ private:
+  std::vector<std::vector<RigidTransform>> WayPoses(const Rows& rows, int from, int to) const {
+    const int pieces = std::clamp(to - from, 1, kMaxPosesOfWay - 1);
+    std::vector<std::vector<RigidTransform>> poses;
+    for (int i = 0; i <= pieces; ++i) {
+      poses.push_back(world_.GetPoses(rows[from + (to - from) * i / pieces]));
+    }
+    return poses;
+  }
+
+  const World& world_;
+  MotionTask task_;
+};
 
 }  // namespace
 
 const char* MotionPhaseName(MotionPhase phase) {
-  switch (phase) {
-    case MotionPhase::kApproach:
-      return "approach";
-    case MotionPhase::kContact:
-      return "contact";
-    case MotionPhase::kClosing:
-      return "closing";
-    case MotionPhase::kLift:
-      return "lift";
+  constexpr std::array<const char*, kNumMotionPhases> kNames{"approach", "contact", "transit",
+                                                             "closing", "lift"};
+  return kNames[static_cast<int>(phase)];
+}
+
+MotionTask WithSteps(const MotionTask& task, int interval, int steps) {
+  PREGRASP_CHECK(interval >= 0 && interval < task.num_intervals() && task.is_free[interval],
+                 interval);
+  PREGRASP_CHECK(steps >= 1, steps);
+  const int begin = task.keyframes[interval], end = task.keyframes[interval + 1];
+  // A frame between the ends: as the last one of the interval before its end, or the first if there
+  // is none: its fingers are those that stay on.
+  MotionFrameTask between = task.frames[begin];
+  between.contacts = Shared(task.frames[begin].contacts, task.frames[end].contacts);
+  between.X_WB_way = {between.X_WB};
+  MotionTask other = task;
+  other.frames.assign(task.frames.begin(), task.frames.begin() + begin + 1);
+  other.frames.insert(other.frames.end(), steps - 1, between);
+  other.frames.insert(other.frames.end(), task.frames.begin() + end, task.frames.end());
+  for (std::size_t k = interval + 1; k < other.keyframes.size(); ++k) {
+    other.keyframes[k] += begin + steps - end;
   }
-  return "";
+  for (std::size_t i = 0; i < other.frames.size(); ++i) {
+    other.frames[i].t = static_cast<double>(i) / other.fps;
+  }
+  return other;
 }
 
 MotionTask BuildMotionTask(const World& world, const std::vector<TraceRow>& trace,
                            const MotionLift& lift, const MotionTiming& timing) {
-  PREGRASP_CHECK(!trace.empty() && !lift.trace.empty());
+  PREGRASP_CHECK(trace.size() >= 2 && lift.trace.size() >= 2, trace.size(), lift.trace.size());
   PREGRASP_CHECK(timing.fps > 0.0, timing.fps);
-  MotionTask task;
-  const auto add = [&](MotionPhase phase, const std::vector<RigidTransform>& X_WB,
-                       const std::array<Placement::Contact, kNumFingers>& contacts) {
-    const double t = static_cast<double>(task.frames.size()) / timing.fps;
-    task.frames.push_back({t, phase, X_WB, contacts});
-  };
-  const auto mark_key = [&] {
-    const int last = static_cast<int>(task.frames.size()) - 1;
-    if (task.keyframes.empty() || task.keyframes.back() != last) task.keyframes.push_back(last);
-  };
+  TaskBuilder task(world, timing.fps);
+  // A finger is put on at the end of one step and is on in the row of the next.
+  task.Add(MotionPhase::kApproach, trace.front().state, {});
+  task.MarkKey(true);
+  const Contacts first = ContactsOf(trace[1].state);
+  task.Add(AnyOn(first) ? MotionPhase::kContact : MotionPhase::kTransit, trace.front().state,
+           first);
+  task.MarkKey(true);
+  task.AddRows(MotionPhase::kContact, Rows(trace, trace.front().state.t, FindStill(trace)));
 
-  const std::vector<RigidTransform> X_WB_start = world.GetPoses(trace.front().state);
-  for (int i = 0; i < FramesIn(timing.approach_seconds, timing.fps); ++i) {
-    add(MotionPhase::kApproach, X_WB_start, {});
-    if (i == 0) mark_key();
-  }
-
-  const double begin = trace.front().state.t, seconds = trace.back().state.t - begin;
-  const int count = FramesIn(seconds, timing.fps);
-  for (int i = 0; i <= count; ++i) {
-    const TraceRow& row = RowAt(trace, begin + seconds * i / count);
-    const auto contacts = ContactsOf(row.state);
-    const bool changes = !SameFingers(contacts, task.frames.back().contacts);
-    add(MotionPhase::kContact, world.GetPoses(row.state), contacts);
-    if (i == 0 || i == count || changes) mark_key();
-  }
-
-  const auto pressing = task.frames.back().contacts;
-  const auto grasp = ContactsOf(RowAt(lift.trace, lift.lift_t).state);
-  const double end = lift.trace.front().state.t, closing_seconds = lift.lift_t - end;
-  const int closing = FramesIn(timing.closing_seconds, timing.fps);
-  for (int i = 1; i <= closing; ++i) {
-    // A pressing finger keeps its contact while the others close, if the grasp uses it there.
-    std::array<Placement::Contact, kNumFingers> contacts{};
-    for (int j = 0; j < kNumFingers; ++j) {
-      const bool stays =
-          pressing[j].on && grasp[j].on && (pressing[j].p_OC - grasp[j].p_OC).norm() < 1e-3;
-      if (stays) contacts[j] = grasp[j];
-    }
-    const TraceRow& row = RowAt(lift.trace, end + closing_seconds * i / closing);
-    add(MotionPhase::kClosing, world.GetPoses(row.state), i == closing ? grasp : contacts);
-    if (i == closing) mark_key();
-  }
-
-  const double lift_seconds = lift.trace.back().state.t - lift.lift_t;
-  const int lifting = FramesIn(lift_seconds, timing.fps);
-  for (int i = 1; i <= lifting; ++i) {
-    const TraceRow& row = RowAt(lift.trace, lift.lift_t + lift_seconds * i / lifting);
-    add(MotionPhase::kLift, world.GetPoses(row.state), ContactsOf(row.state));
-    if (i == lifting) mark_key();
-  }
-  for (const MotionFrameTask& frame : task.frames) {
-    PREGRASP_CHECK(AreFinite(frame.t, frame.X_WB), frame.t);
-  }
-  return task;
+  const Rows handover(lift.trace, lift.trace.front().state.t, lift.closing_t);
+  task.AddRows(MotionPhase::kClosing, handover);
+  const Rows closing(lift.trace, lift.closing_t, lift.lift_t);
+  task.Add(MotionPhase::kClosing, closing[closing.first()],
+           ContactsOf(closing[std::min(closing.first() + 1, closing.last())]));
+  task.MarkKey(true);
+  task.AddRows(MotionPhase::kClosing, closing);
+  task.AddRows(MotionPhase::kLift, Rows(lift.trace, lift.lift_t, lift.trace.back().state.t));
+  return task.Finish();
 }
 
 IkProblem MakeIkProblem(const MotionFrameTask& frame) {
@@ -131,6 +229,18 @@ IkProblem MakeIkProblem(const MotionFrameTask& frame) {
         {static_cast<Finger>(j), X_WO * contact.p_OC, Vector3(X_WO.linear() * contact.nhat_O)});
   }
   return problem;
+}
+
+HandWay MakeHandWay(const MotionFrameTask& before, const MotionFrameTask& frame,
+                    const HandConfiguration& from, const HandConfiguration& to) {
+  HandWay way;
+  way.from = from;
+  way.to = to;
+  way.X_WB = frame.X_WB_way;
+  for (int j = 0; j < kNumFingers; ++j) {
+    way.touch.touching[j] = before.contacts[j].on || frame.contacts[j].on;
+  }
+  return way;
 }
 
 }  // namespace pregrasp

@@ -219,6 +219,7 @@ Lines Describe(const Scene& /*scene*/, const FrameFacts& facts) {
   for (const PlaceFacts& place : facts.touching) touching.emplace_back(FingerName(place.finger));
   std::string verdict = "The hand is free of overlaps.";
   if (facts.failed) verdict = "No hand pose was found; this is the best attempt.";
+  if (!facts.way_clear) verdict = "The way from the frame before goes through something.";
   if (!facts.failed && facts.loosened != "none") {
     verdict = fmt::format("Only with a demand loosened: {}.", facts.loosened);
   }
@@ -234,9 +235,13 @@ Lines Describe(const Scene& /*scene*/, const MotionFacts& facts) {
   return {fmt::format("The hand's motion in {} frames, keyframes solved in {} order.", facts.frames,
                       facts.order),
           fmt::format("failed frames\t{}", facts.failed),
+          fmt::format("blocked ways\t{}", facts.blocked_ways),
           fmt::format("loosened frames\t{}", facts.loosened),
           fmt::format("least clearance\t{:.2f} mm", facts.min_clearance_mm),
-          fmt::format("largest tip error\t{:.2f} mm", facts.max_tip_error_mm)};
+          fmt::format("largest tip error\t{:.2f} mm", facts.max_tip_error_mm),
+          fmt::format("fastest joint\t{:.2f} rad/s", facts.rates.joint_speed),
+          fmt::format("fastest wrist\t{:.2f} m/s", facts.rates.wrist_speed),
+          fmt::format("frames over a limit\t{}", facts.over_limits)};
 }
 
 Lines Describe(const Scene& scene, const OpenFacts& /*facts*/) {

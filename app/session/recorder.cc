@@ -98,7 +98,7 @@ void Recorder::WriteTables(const Timeline::Node& node) {
   if (state->motion && state->motion_state->filled) {
     std::string table = MotionHeader();
     for (std::size_t i = 0; i < state->motion_state->frames.size(); ++i) {
-      table += MotionRow(state->motion->task().frames[i], state->motion_state->frames[i]);
+      table += MotionRow(state->motion_state->task->frames[i], state->motion_state->frames[i]);
     }
     WriteFile(run_.partial() / "motion.csv", table);
   }

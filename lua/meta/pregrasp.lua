@@ -665,12 +665,16 @@ function Grasp:motion(options) end
 ---@class MotionOptions
 ---@field order? "reverse"|"forward" of keyframes: reverse solves the last first; reverse
 ---@field fps? number frames a second, 1 to 120 Hz, within the rules at least 30; 30
----@field approach_seconds? number from the start to the first contact, 0 to 10 s; 1.2
----@field closing_seconds? number in which the fingers close, 0 to 10 s; 1
 ---@field approach_distance? number how far off the palm starts, 0 to 1 m, within the rules at least 0.2; 0.2
 ---@field keyframe_starts? integer restarts of inverse kinematics at a keyframe, 1 to 1000; 25
 ---@field frame_starts? integer restarts of inverse kinematics in between, 1 to 1000; 4
----@field smoothing_sweeps? integer each frame drawn to the mean of its neighbours, 0 to 100; 6
+---@field smoothing_iterations? integer of smoothing the whole motion, at most, 1 to 1000; 40
+---@field pace? number share of the limits at which free parts are gone through, 0.1 to 1; 0.9
+---@field wrist_speed? number limit, 0.01 to 10 m/s, within the rules at most 1; 1
+---@field wrist_turn_speed? number limit, 0.01 to 30 rad/s, within the rules at most 3; 3
+---@field wrist_acceleration? number limit, 0.1 to 100 m/s^2, within the rules at most 5; 5
+---@field wrist_turn_acceleration? number limit, 0.1 to 1000 rad/s^2, within the rules at most 20; 20
+---@field joint_acceleration? number limit; the joints' speeds are limited by the hand's own, 0.1 to 1000 rad/s^2, within the rules at most 40; 40
 ---@field tip_tolerance? number a fingertip may miss its contact by this before a frame counts as loosened, 1e-04 to 0.01 m, within the rules at most 5e-04; 5e-04
 ---@field max_cone_deg? number between a distal axis and the inward normal, likewise, 1 to 180 deg, within the rules at most 60; 60
 ---@field contact_depth? number a contacting distal link may enter the object by this, likewise, 0 to 0.01 m, within the rules at most 0.001; 0.001
@@ -698,7 +702,7 @@ function Grasp:shot(options) end
 ---@field finished boolean
 ---@field num_keyframes integer
 ---@field num_solved integer of them
----@field num_frames integer
+---@field num_frames integer few before free parts are given their time; then as many as there are
 ---@field order "reverse"|"forward"
 ---@field summary MotionSummary? nil before it is finished
 ---@field step_id string
@@ -729,19 +733,22 @@ function Motion:shot(options) end
 
 ---@class MotionSummary
 ---@field frames integer
----@field failed integer without a solution
+---@field failed integer frames without a pose, or with a way to them that goes through something
+---@field blocked_ways integer of these, the latter
 ---@field loosened integer that gave something up
 ---@field max_tip_error_mm number
 ---@field min_clearance_mm number
 ---@field max_joint_speed number [rad/s]
 ---@field max_wrist_speed number [m/s]
+---@field over_limits integer frames at which the hand exceeds a limit of speed or acceleration
 
 ---@class Frame
----@field number integer from 1, in time
+---@field number integer from 1, in time; of a keyframe, before free parts are given their time
 ---@field t number [s]
----@field phase string "approach", "contact", "closing" or "lift"
+---@field phase string "approach", "contact", "transit" (between contact stages no finger touches), "closing" or "lift"
 ---@field loosened string what it gave up: "none", or the rung of the ladder
----@field failed boolean
+---@field failed boolean no pose, or a way to it that goes through something
+---@field way_clear boolean the way from the frame before is free of overlap
 ---@field tip_error_mm number of the worst fingertip
 ---@field clearance_mm number
 ---@field X_WH Transform of the palm

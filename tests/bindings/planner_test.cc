@@ -237,7 +237,7 @@ const char* const kCube = R"(
         max_refinement = 0.05, max_solves = 20, starts = 3, search_sets = 0 }
       if gr:best() then break end
     end
-    local quick = { keyframe_starts = 3, frame_starts = 1, smoothing_sweeps = 1, fps = 5 }
+    local quick = { keyframe_starts = 3, frame_starts = 1, smoothing_iterations = 3, fps = 5 }
 )";
 
 TEST_F(PlannerScriptTest, AFeasibleGraspHasForcesAPoseAndALift) {

@@ -7,6 +7,7 @@
 
 #include "app/geometry/mass_properties.h"
 #include "app/hand/certificate.h"
+#include "tests/motion/motion_audit.h"
 
 namespace pregrasp {
 namespace {
@@ -65,24 +66,27 @@ class HandMotionTest : public ::testing::Test {
     grasp_ = result.configuration();
   }
 
-  HandMotion Make(const MotionConfig& config) const {
-    return {*solver_, BuildMotionTask(*world_, trace_, {lift_, lift_t_}, MotionTiming()), grasp_,
-            config, 1};
+  HandMotion Make(const MotionConfig& config, std::uint64_t seed = 1) const {
+    return {*solver_,
+            BuildMotionTask(*world_, trace_, {lift_, closing_t_, lift_t_}, MotionTiming()), grasp_,
+            config, seed};
   }
 
-  // Ten centimetres up in 1.2 s after 0.6 s at rest, turning a little, as no formula of ours would.
+  // Ten centimetres up in 1.2 s after 0.1 s of hand-over and 0.6 s at rest, turning a little, as no
+  // formula of ours would. The pushing finger is on until the others are put on.
   void MakeLift() {
     WorldState state = trace_.back().state;
-    for (int f = 0; f < kNumFingers; ++f) {
-      state.fingers[f].on = contacts_[f].on;
-      state.fingers[f].p_OC = contacts_[f].p_OC;
-      state.fingers[f].nhat_O = contacts_[f].nhat_O;
-    }
     const double dt = world_->config().dt;
-    lift_t_ = state.t + 0.6;
+    closing_t_ = state.t + 0.1;
+    lift_t_ = state.t + 0.7;
     const Quaternion turn(Eigen::AngleAxisd(0.01 * dt, Vector3::UnitX()));
-    for (const double end = state.t + 1.8; state.t < end; state.t += dt) {
+    for (const double end = state.t + 1.9; state.t < end; state.t += dt) {
       lift_.push_back({state, {}});
+      for (int f = 0; f < kNumFingers && state.t > closing_t_ - 0.5 * dt; ++f) {
+        state.fingers[f].on = contacts_[f].on;
+        state.fingers[f].p_OC = contacts_[f].p_OC;
+        state.fingers[f].nhat_O = contacts_[f].nhat_O;
+      }
       if (state.t < lift_t_) continue;
       state.bodies[0].p_WB.z() += 0.1 / 1.2 * dt;
       state.bodies[0].q_WB = turn * state.bodies[0].q_WB;
@@ -94,7 +98,7 @@ class HandMotionTest : public ::testing::Test {
   std::unique_ptr<IkSolver> solver_;
   std::vector<TraceRow> trace_;
   std::vector<TraceRow> lift_;
-  double lift_t_ = 0.0;
+  double closing_t_ = 0.0, lift_t_ = 0.0;
   std::array<Placement::Contact, kNumFingers> contacts_{};
   HandConfiguration grasp_;
 };
@@ -108,14 +112,90 @@ TEST_F(HandMotionTest, TheTaskKeepsTheTimesOfThePhysicsAndMarksEveryChangeOfCont
     contact_frames += task.frames[i].phase == MotionPhase::kContact;
   }
   EXPECT_EQ(contact_frames, 25);  // 0.8 s at 30 frames a second, both ends
-  // Start, first contact, end of the push, closed, lifted.
-  EXPECT_EQ(task.keyframes.size(), 5U);
+  // Start, first contact, end of the push, of the hand-over, closed, lift begun, lifted.
+  EXPECT_EQ(task.keyframes.size(), 7U);
+  EXPECT_EQ(task.is_free, (std::vector<bool>{true, false, false, true, false, false}));
+  // A free part has one step, and the bodies stand in it.
+  EXPECT_EQ(task.num_steps(0), 1);
+  EXPECT_EQ(task.num_steps(3), 1);
+  EXPECT_EQ(task.frames[task.keyframes[4]].X_WB_way.size(), 1U);
+}
+
+TEST_F(HandMotionTest, AFreePartCanHaveAnyNumberOfStepsAndNothingElseChanges) {
+  const MotionTask task =
+      BuildMotionTask(*world_, trace_, {lift_, closing_t_, lift_t_}, MotionTiming());
+  const MotionTask longer = WithSteps(task, 3, 12);
+  ASSERT_EQ(longer.frames.size(), task.frames.size() + 11);
+  EXPECT_EQ(longer.num_steps(3), 12);
+  for (std::size_t i = 0; i < longer.frames.size(); ++i) {
+    EXPECT_NEAR(longer.frames[i].t, static_cast<double>(i) / 30.0, 1e-9);
+  }
+  const int begin = longer.keyframes[3], end = longer.keyframes[4];
+  for (int i = begin + 1; i < end; ++i) {
+    EXPECT_EQ(longer.frames[i].phase, MotionPhase::kClosing);
+    EXPECT_TRUE(longer.frames[i].X_WB[0].isApprox(task.frames[task.keyframes[3]].X_WB[0], 0.0));
+    for (const auto& contact : longer.frames[i].contacts) EXPECT_FALSE(contact.on);  // none is kept
+  }
+  const MotionTask back = WithSteps(longer, 3, 1);
+  EXPECT_EQ(back.keyframes, task.keyframes);
+  EXPECT_EQ(back.frames.size(), task.frames.size());
+}
+
+TEST_F(HandMotionTest, AHoldInWhichNothingMovesIsNotWaitedThrough) {
+  std::vector<TraceRow> trace = trace_;
+  WorldState state = trace.back().state;
+  for (int i = 0; i < 360; ++i) {
+    state.t += world_->config().dt;
+    trace.push_back({state, {}});
+  }
+  const MotionTask task =
+      BuildMotionTask(*world_, trace, {lift_, closing_t_, lift_t_}, MotionTiming());
+  const auto contact = std::count_if(task.frames.begin(), task.frames.end(), [](const auto& frame) {
+    return frame.phase == MotionPhase::kContact;
+  });
+  EXPECT_LE(contact, 25);
+  EXPECT_GE(contact, 20);
+}
+
+TEST_F(HandMotionTest, TheWayToAFrameIsWhereTheSimulationHasTheBodiesMeanwhile) {
+  const MotionTask task =
+      BuildMotionTask(*world_, trace_, {lift_, closing_t_, lift_t_}, MotionTiming());
+  for (std::size_t i = 1; i < task.frames.size(); ++i) {
+    const MotionFrameTask& frame = task.frames[i];
+    ASSERT_FALSE(frame.X_WB_way.empty()) << i;
+    EXPECT_TRUE(frame.X_WB_way.back()[0].isApprox(frame.X_WB[0], 0.0)) << i;
+    if (frame.X_WB_way.size() == 1) continue;
+    EXPECT_EQ(frame.X_WB_way.size(), 9U) << i;  // 8 steps of 1/240 s
+    EXPECT_NEAR(
+        (frame.X_WB_way.front()[0].translation() - task.frames[i - 1].X_WB[0].translation()).norm(),
+        0.0, 1.1e-4)
+        << i;
+  }
+}
+
+TEST_F(HandMotionTest, BetweenContactStagesWithoutAFingerTheHandIsInTransit) {
+  // The finger is off for the third quarter of the push.
+  std::vector<TraceRow> trace = trace_;
+  for (int i = 97; i < 145; ++i) trace[i].state.fingers[1].on = false;
+  const MotionTask task =
+      BuildMotionTask(*world_, trace, {lift_, closing_t_, lift_t_}, MotionTiming());
+  std::string phases;
+  for (const MotionFrameTask& frame : task.frames) {
+    const char initial = MotionPhaseName(frame.phase)[1];  // all five differ there
+    if (phases.empty() || phases.back() != initial) phases += initial;
+    const bool touches = frame.contacts[1].on;
+    if (frame.phase == MotionPhase::kTransit) EXPECT_FALSE(touches) << frame.t;
+    if (frame.phase == MotionPhase::kContact) EXPECT_TRUE(touches) << frame.t;
+  }
+  EXPECT_EQ(phases, "poroli");  // approach, contact, transit, contact, closing, lift
 }
 
 TEST_F(HandMotionTest, TheLiftIsTheSimulatedOneAtTheSpeedOfThePhysics) {
-  const MotionTask task = BuildMotionTask(*world_, trace_, {lift_, lift_t_}, MotionTiming());
-  const int closed = task.keyframes[3], count = static_cast<int>(task.frames.size());
+  const MotionTask task =
+      BuildMotionTask(*world_, trace_, {lift_, closing_t_, lift_t_}, MotionTiming());
+  const int closed = task.keyframes[5], count = static_cast<int>(task.frames.size());
   EXPECT_EQ(task.frames[closed].phase, MotionPhase::kClosing);
+  EXPECT_EQ(task.frames[closed + 1].phase, MotionPhase::kLift);
   for (int i = closed; i < count; ++i) {
     const double t = lift_t_ + task.frames[i].t - task.frames[closed].t;
     const auto row =
@@ -129,27 +209,65 @@ TEST_F(HandMotionTest, TheLiftIsTheSimulatedOneAtTheSpeedOfThePhysics) {
   EXPECT_TRUE(task.frames.back().X_WB[0].isApprox(world_->GetPoses(lift_.back().state)[0], 0.0));
 }
 
-TEST_F(HandMotionTest, EveryFrameIsSolvedAndCertifiedByFcl) {
+TEST_F(HandMotionTest, EveryFrameIsSolvedAndCertifiedByFclAndEveryWayIsFree) {
   const HandMotion motion = Make(MotionConfig());
   MotionState state = motion.Start();
   motion.Finish(state);
   const MotionSummary summary = motion.Summarize(state);
   EXPECT_EQ(summary.failed, 0);
+  EXPECT_EQ(summary.blocked_ways, 0);
   EXPECT_EQ(summary.loosened, 0);
   EXPECT_LE(summary.max_tip_error, 5e-4);
   EXPECT_GE(summary.min_clearance, 0.0);
   const HandCertificate certificate(ShadowHand(),
                                     {&scene_.bodies[0].shape, &scene_.bodies[1].shape});
+  const std::vector<MotionFrameTask>& frames = state.task->frames;
+  ASSERT_EQ(frames.size(), state.frames.size());
   for (std::size_t i = 0; i < state.frames.size(); ++i) {
     TouchRule touch;
-    for (int f = 0; f < kNumFingers; ++f)
-      touch.touching[f] = motion.task().frames[i].contacts[f].on;
-    EXPECT_TRUE(certificate
-                    .FindCollisions(state.frames[i].configuration, motion.task().frames[i].X_WB,
-                                    touch, true)
-                    .empty())
+    for (int f = 0; f < kNumFingers; ++f) touch.touching[f] = frames[i].contacts[f].on;
+    EXPECT_TRUE(
+        certificate.FindCollisions(state.frames[i].configuration, frames[i].X_WB, touch, true)
+            .empty())
         << "frame " << i;
   }
+}
+
+TEST_F(HandMotionTest, AtTenTimesTheFrameRateAnIndependentCheckFindsNothingAndLimitsAreKept) {
+  for (const std::uint64_t seed : {1, 2}) {
+    const HandMotion motion = Make(MotionConfig(), seed);
+    MotionState state = motion.Start();
+    motion.Finish(state);
+    std::vector<AuditFrame> frames;
+    for (std::size_t i = 0; i < state.frames.size(); ++i) {
+      const MotionFrameTask& task = state.task->frames[i];
+      frames.push_back({task.t, task.phase, task.X_WB, state.frames[i].configuration, {}});
+      for (int f = 0; f < kNumFingers; ++f) frames.back().on[f] = task.contacts[f].on;
+    }
+    const MotionAudit audit = AuditMotion(ShadowHand(), scene_, frames);
+    EXPECT_EQ(audit.bad_frames, 0) << audit.worst_pair;
+    EXPECT_EQ(audit.bad_ways, 0) << audit.worst_pair;
+    EXPECT_EQ(audit.out_of_range, 0);
+    for (const AuditRates& rates : audit.rates) EXPECT_EQ(rates.over, 0) << rates.limiting;
+    EXPECT_LE(audit.longest_still, 1.2);  // what the simulation stands still for
+  }
+}
+
+TEST_F(HandMotionTest, ATableThatRisesBetweenTwoFramesOnlyIsFoundAndMarked) {
+  // In the middle of the lift, for less than a frame, the table is where the hand is.
+  const HandMotion honest = Make(MotionConfig());
+  MotionTask task = honest.task();
+  MotionFrameTask& frame = task.frames[task.frames.size() - 10];
+  ASSERT_EQ(frame.X_WB_way.size(), 9U);
+  for (int i = 3; i < 6; ++i) {
+    frame.X_WB_way[i][1].translation().z() = frame.X_WB[0].translation().z() + 0.05;
+  }
+  const HandMotion motion(*solver_, task, grasp_, {}, 1);
+  MotionState state = motion.Start();
+  motion.Finish(state);
+  const MotionSummary summary = motion.Summarize(state);
+  EXPECT_GE(summary.blocked_ways, 1);
+  EXPECT_GE(summary.failed, summary.blocked_ways);
 }
 
 TEST_F(HandMotionTest, KeyframesAreSolvedLastToFirstByDefault) {
@@ -157,8 +275,7 @@ TEST_F(HandMotionTest, KeyframesAreSolvedLastToFirstByDefault) {
   MotionState state = motion.Start();
   while (motion.SolveKeyframe(state)) {
   }
-  std::vector<int> reversed(motion.task().keyframes.rbegin(), motion.task().keyframes.rend());
-  EXPECT_EQ(state.solved_keys, reversed);
+  EXPECT_EQ(state.solved_keys, (std::vector<int>{6, 5, 4, 3, 2, 1, 0}));
 }
 
 TEST_F(HandMotionTest, ThePalmStartsTwentyCentimetresOff) {
@@ -166,8 +283,8 @@ TEST_F(HandMotionTest, ThePalmStartsTwentyCentimetresOff) {
   MotionState state = motion.Start();
   while (motion.SolveKeyframe(state)) {
   }
-  const Vector3 first = state.frames[motion.task().keyframes[1]].configuration.X_WH.translation();
-  const Vector3 start = state.frames[0].configuration.X_WH.translation();
+  const Vector3 first = state.keys[1].configuration.X_WH.translation();
+  const Vector3 start = state.keys[0].configuration.X_WH.translation();
   EXPECT_NEAR((start - first).norm(), 0.20, 0.03);
 }
 
