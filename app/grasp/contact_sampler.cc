@@ -127,6 +127,8 @@ std::optional<std::vector<GraspContact>> ContactSampler::Sample(
   Draw draw;
   draw.near = rng.Uniform() < config_.near_share;
   draw.opposed = rng.Uniform() < config_.opposed_share;
+  // Edges have many directions at each point: without this, hardly a set would keep to faces.
+  const bool faces_only = places_.has_edges() && rng.Uniform() < 0.5;
   const std::uint32_t extra = rng.UniformInt(4);  // with ring, with little
   std::vector<Finger> fingers{Finger::kMiddle, Finger::kIndex};
   if (extra & 1) fingers.push_back(Finger::kRing);
@@ -136,8 +138,12 @@ std::optional<std::vector<GraspContact>> ContactSampler::Sample(
   std::vector<GraspContact> contacts = fixed;
   for (const Finger finger : fingers) {
     if (FindContact(fixed, finger) != nullptr) continue;
-    const std::optional<GraspContact> contact = DrawContact(finger, contacts, draw, rng);
-    if (!contact) return std::nullopt;
+    std::optional<GraspContact> contact = DrawContact(finger, contacts, draw, rng);
+    for (int attempt = 1; attempt < kTries && contact && contact->on_edge && faces_only;
+         ++attempt) {
+      contact = DrawContact(finger, contacts, draw, rng);
+    }
+    if (!contact || (contact->on_edge && faces_only)) return std::nullopt;
     contacts.push_back(*contact);
   }
   std::sort(contacts.begin(), contacts.end(),

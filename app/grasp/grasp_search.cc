@@ -130,7 +130,13 @@ GraspSearchResult SearchGrasps(const ContactPlaces& places, const GraspSearchCon
   const auto done = [&] {
     return stats.feasible >= config.max_found || stats.solved >= config.max_solves;
   };
-  while (stats.drawn < config.max_sets && stats.plausible < config.max_plausible && !done()) {
+  // Where so many sets are wanted at the forces, these go on when no more may be solved.
+  const bool all_forces = config.max_plausible < std::numeric_limits<int>::max();
+  const auto enough = [&] {
+    return stats.plausible >= config.max_plausible || stats.feasible >= config.max_found ||
+           (!all_forces && done());
+  };
+  while (stats.drawn < config.max_sets && !enough()) {
     ThrowIfInterrupted();
     const int first = stats.drawn;
     const int batch = std::min(kBatch, config.max_sets - first);

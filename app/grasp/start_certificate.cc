@@ -59,7 +59,7 @@ const char* StartVerdictName(StartVerdict verdict) {
 StartCertificateConfig::StartCertificateConfig() {
   search.max_sets = 20000000;  // a minute or two, where hardly any set is within reach
   search.max_plausible = kLeastWithinReach;
-  search.max_solves = std::numeric_limits<int>::max();
+  search.max_solves = 5000;  // a minute or two on two cores, where none of them is within reach
   search.grasp.kinematics.ik.max_starts = 20;
   search.grasp.kinematics.reach_starts = 20;
   search.sampler.slack.environment = search.grasp.kinematics.ik.tip_tolerance;

@@ -19,9 +19,9 @@ enum class StartVerdict {
 const char* StartVerdictName(StartVerdict verdict);
 
 struct StartCertificateConfig {
-  /// Of the search: kLeastWithinReach sets, and every one that forces hold goes to inverse
-  /// kinematics, with IkConfig's 20 restarts. A set counts as reached unless all of them fail
-  /// without collision too.
+  /// Of the search: kLeastWithinReach sets are put to the forces, and those that hold to inverse
+  /// kinematics with IkConfig's 20 restarts, 5,000 at most. A set counts as reached unless all of
+  /// them fail without collision too.
   GraspSearchConfig search;
   std::uint64_t seed = 1;
 

@@ -23,6 +23,7 @@ std::string DescribeProof(const StartCertificate& start) {
     return fmt::format("the proof holds even at {:g}, the largest friction tried",
                        kMostProofFriction);
   }
+  if (!(start.mu_star > 0.0)) return "no proof at any friction, mu* 0";
   return fmt::format("the proof holds up to friction {:.3f} (mu*){}", start.mu_star,
                      start.thin() ? ", a thin margin" : "");
 }
@@ -33,9 +34,11 @@ std::string DescribeSearch(const StartCertificate& start) {
   return fmt::format(
       "{}{} contact sets with tips as near and far as a hand brings them were put to the forces, "
       "{} "
-      "of them with an edge or corner: {} hold, the hand reaches {} of those, and none is feasible",
+      "of them with an edge or corner: {} hold, {} of these were put to inverse kinematics, the "
+      "hand "
+      "reaches {}, and none is feasible",
       enough ? "" : fmt::format("in {} draws only ", search.drawn), search.plausible,
-      search.on_edges, search.held, search.reached);
+      search.on_edges, search.held, search.solved, search.reached);
 }
 
 std::string DescribeExample(const StartCertificate& start) {
