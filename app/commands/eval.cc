@@ -169,7 +169,7 @@ void AddEval(const Subcommand& app, Action& action) {
       "run was cut off");
   eval.Add("--study", options->study, StudyHelp()).ShowDefault();
   eval.Add("--scenes", options->scenes, "all, or names or files with commas between").ShowDefault();
-  eval.Add("--seeds", options->seeds, "Seeds of each scene").Within({1, 100'000, 1}).ShowDefault();
+  eval.Add("--seeds", options->seeds, "Seeds of each scene").Within({1, 10'000, 1}).ShowDefault();
   eval.AddSeed("--first-seed", options->first_seed, "The first of them");
   eval.Add("--shard", options->shard, "i/n: make every n-th item, from the i-th").ShowDefault();
   eval.Add("--out", options->out, "Folder of the results");

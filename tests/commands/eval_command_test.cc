@@ -192,7 +192,7 @@ TEST_F(EvalCommandTest, BadInputIsOneLineAndLeavesNothing) {
       {{"--out", "x", "--scenes", ","}, "--scenes"},
       {{"--out", "x", "--scenes", "ruler,ruler"}, "\"ruler\" twice"},
       {{"--out", "x", "--scenes", "../scenes/ruler"}, "--scenes"},
-      {{"--out", "x", "--seeds", "0"}, "--seeds: expected a whole number from 1 to 100000"},
+      {{"--out", "x", "--seeds", "0"}, "--seeds: expected a whole number from 1 to 10000"},
       {{"--out", "x", "--seeds", "2.5"}, "--seeds"},
       {{"--out", "x", "--seeds", "-1"}, "--seeds"},
       {{"--out", "x", "--first-seed", "-1"}, "--first-seed"},
