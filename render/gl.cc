@@ -25,8 +25,8 @@ void LoadFunctions() {
 void RequireKnownDriver() {
   const char* driver = std::getenv("GALLIUM_DRIVER");
   const std::string name = driver == nullptr ? "" : driver;
-  if (name.empty() || name == "llvmpipe" || name == "softpipe") return;
-  throw InputError("GALLIUM_DRIVER", "", "llvmpipe or softpipe, or nothing", '"' + name + '"');
+  if (name.empty() || name == "llvmpipe") return;
+  throw InputError("GALLIUM_DRIVER", "", "llvmpipe, or nothing", '"' + name + '"');
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ void SetFrameFacts(Application& a, const MotionFrameTask& task, const MotionFram
   facts.frame = frame + 1;
   facts.keyframe = keyframe + 1;
   facts.phase = MotionPhaseName(task.phase);
-  facts.loosened = LooseningRungName(solved.rung);
+  facts.loosened = LooseningRungName(solved.failed() ? LooseningRung::kFailed : solved.rung);
   facts.failed = solved.failed();
   facts.way_clear = solved.way_clear;
   facts.tip_error_mm = 1e3 * solved.tip_error;

@@ -177,12 +177,13 @@ MotionFrame HandMotion::SolveApproachStart(const HandConfiguration& first_contac
   const IkProblem problem = MakeIkProblem(task);
   DetourConfig straight = config_.detour;
   straight.max_tries = 0;
+  const auto stream = [&](std::size_t i) { return Rng(seed_, RngStream::kMotionApproach, 0, i); };
   std::optional<MotionFrame> best;
   for (std::size_t i = 0; i < directions.size(); ++i) {
     HandConfiguration open = first_contact;
     open.q = RelaxedPosture();
     open.X_WH.translation() += config_.approach_distance * directions[i].normalized();
-    const Rng rng(seed_, RngStream::kMotionApproach, 0, i);
+    const Rng rng = stream(i);
     const MotionFrame start = SolveFrame(task, open, open, config_.frame_starts, rng);
     if (start.failed()) continue;
     const DetourResult way =
@@ -194,8 +195,7 @@ MotionFrame HandMotion::SolveApproachStart(const HandConfiguration& first_contac
   if (best) return *best;
   HandConfiguration open = first_contact;
   open.X_WH.translation() += config_.approach_distance * up;
-  return SolveFrame(task, open, open, config_.keyframe_starts,
-                    Rng(seed_, RngStream::kMotionApproach, 0, directions.size()));
+  return SolveFrame(task, open, open, config_.keyframe_starts, stream(directions.size()));
 }
 
 std::vector<int> HandMotion::KeyframeSequence() const {

@@ -70,7 +70,7 @@ TEST(BadFileTest, WhatIsNoLuaFileIsOneLine) {
       {"loop.lua", "loop.lua: expected a file, got nothing of that name"},
       {"missing.lua", "missing.lua: expected a file, got nothing of that name"},
       {"/dev/zero", "/dev/zero: expected a plain file, got a device or pipe"},
-      {"", "expected a file"},
+      {"", "expected a value, got an empty one"},
   };
   for (const auto& [file, expected] : cases) {
     SCOPED_TRACE(file);

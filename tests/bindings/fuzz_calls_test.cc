@@ -32,7 +32,7 @@ local function keep(x)
 end
 local function pick(list) return list[random(#list)] end
 local function any()  -- an object, now and then one that only a weak table still has
-  if random(8) == 1 then for x, kind in next, weak do return x, kind end end
+  if random(16) == 1 then for x, kind in next, weak do return x, kind end end
   local kinds = {} for kind in pairs(pool) do kinds[#kinds + 1] = kind end
   local kind = pick(kinds)
   return pick(pool[kind]), kind
@@ -58,7 +58,7 @@ end
 local small = { quality = "draft", size = {64, 48} }
 local good = {
   Session = {
-    simulate = function() return { trace = random(2) == 1 } end, body = function() return "cube" end,
+    simulate = function() return { trace = random(2) == 1 } end, body = function() return "object" end,
     distance = point, cloud = function() return { points = 64 } end, mesh = function() return { triangles = 12 } end,
     graph = function() return { triangles = 12, samples = 1, points = 128 } end,
     break_when = function() if random(2) == 1 then return predicate() end end,
@@ -83,7 +83,7 @@ local good = {
   Path = { optimize = function() return { samples = 4, iterations = 1 } end },
   Optimizer = { step = function() end, back = function() return random(0, 1) end, fork = function() return {} end,
     rollouts = function() end, certify = function() return { hold_seconds = 0.05 } end },
-  Trajectory = { body = function() return "cube" end,
+  Trajectory = { body = function() return "object" end,
     grasps = function() return { samples = 1, points = 100, pairs = 100, max_solves = 1, starts = 1, search_sets = 0 } end },
   Grasps = { all = function() end, best = function() end }, Grasp = { motion = function() return {} end },
   Motion = { back = function() return 0 end }, Frame = {}, Reason = {}, Shape = {}, Scene = {},
@@ -103,15 +103,16 @@ local costly = { graph = 0.1, certify = 0.1, grasps = 0.1, optimize = 0.3, save 
 local calls, passed, depth = 0, 0, 0
 local function call()
   local x, kind = any()
-  if random(10) == 1 then return pcall(function() return x[pick(fields)] end) end
+  if random(40) == 1 then return pcall(function() return x[pick(fields)] end) end
   local methods = good[kind]
   local names = {} for name in pairs(methods or {}) do names[#names + 1] = name end
-  if #names == 0 or random(20) == 1 then return pcall(pg[pick{ "box", "union", "wrench", "ik", "scene", "open" }], junk(1), junk(1)) end
+  if #names == 0 or random(40) == 1 then return pcall(pg[pick{ "box", "union", "wrench", "ik", "scene", "open" }], junk(1), junk(1)) end
   local name = pick(names)
   if random() > (costly[name] or 1) then calls = calls - 1 return nil end
   local argument
-  if random(4) > 1 then argument = methods[name]() else argument = junk(1) end
-  if type(argument) == "table" and random(6) == 1 then argument[next(argument) or 1] = junk(1) end
+  if random(20) > 1 then argument = methods[name]() else argument = junk(1) end
+  if type(argument) == "table" and random(12) == 1 then argument[next(argument) or 1] = junk(1) end
+  if argument == nil then return pcall(function() return x[name](x) end) end
   return pcall(function() return x[name](x, argument) end)
 end
 function step(nested)

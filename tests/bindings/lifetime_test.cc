@@ -47,7 +47,7 @@ local function all()
     o = plan(seed)
     if o.Grasps:best() then break end
   end
-  o.Motion = o.Grasps:best():motion{ keyframe_starts = 3, frame_starts = 1, smoothing_sweeps = 1, fps = 5 }
+  o.Motion = o.Grasps:best():motion{ keyframe_starts = 3, frame_starts = 1, smoothing_iterations = 1, fps = 5 }
   for key in o.Motion:keyframes() do o.Frame = key break end
   o.Shape = pg.box{1, 1, 1}
   o.Scene = pg.scene{ name = "x", object = { shape = pg.sphere{0.02}, mass = 0.1, p = {0, 0, 0.02} },
@@ -56,14 +56,14 @@ local function all()
 end
 -- What a script would do with each kind.
 local use = {
-  Session = function(x) return x.name, x:body("cube").p end,
+  Session = function(x) return x.name, x:body("object").p end,
   Simulation = function(x) x:step(2) return x.t end,
   Graph = function(x) return x.stage, x:why(3).text end,
   Reason = function(x) return x.text end,
   Paths = function(x) return x:top(1)[1].score end,
   Path = function(x) return x.rank end,
   Optimizer = function(x) return x.best_cost, #x:rollouts() end,
-  Trajectory = function(x) return x.certified, x:body("cube").p end,
+  Trajectory = function(x) return x.certified, x:body("object").p end,
   Grasps = function(x) return x.count, x[1].reason end,
   Grasp = function(x) return x.reason end,
   Motion = function(x) return x.num_solved, x:step() end,
@@ -149,7 +149,7 @@ TEST_F(LifetimeTest, AnObjectLivesOnWithoutTheSessionThatMadeIt) {
 }
 
 TEST_F(LifetimeTest, WhileAPredicateIsAskedNothingOfItsSessionMoves) {
-  EXPECT_EQ(Script(R"(
+  EXPECT_EQ(Script(R"lua(
     local o = all()
     local other = session(2)
     local acts = {
@@ -172,14 +172,14 @@ TEST_F(LifetimeTest, WhileAPredicateIsAskedNothingOfItsSessionMoves) {
         end
       end
       if pcall(frames) then went[#went + 1] = "keyframes()" end
-      assert(o.Simulation.t and o.Session:body("cube") and o.Graph:why(1).text and o.Optimizer.best_cost)
+      assert(o.Simulation.t and o.Session:body("object") and o.Graph:why(1).text and o.Optimizer.best_cost)
       local x = other:simulate() x:step(2)
       assert(x.num_steps == 2)
       o.Session:break_when(nil)
       litter()
       return true
     end)
-    print(o.Simulation:step(3), o.Simulation.num_steps, refused, table.concat(went, "; ")))"),
+    print(o.Simulation:step(3), o.Simulation.num_steps, refused, table.concat(went, "; ")))lua"),
             "true\t1\t41\t\n");
 }
 

@@ -7,7 +7,7 @@
 namespace pregrasp {
 namespace {
 
-RigidTransform PoseAt(const Vector3& p) { return MakeTransform(Quaternion::Identity(), p); }
+RigidTransform Standing(const Vector3& p) { return MakeTransform(Quaternion::Identity(), p); }
 
 class SmoothMotionTest : public ::testing::Test {
  protected:
@@ -63,7 +63,7 @@ class SmoothMotionTest : public ::testing::Test {
   }
 
   const Shape ball_{Sphere{0.03}}, post_{Capsule{0.005, 0.02}};
-  std::vector<RigidTransform> X_WB_{PoseAt({0.0, 0.0, 3.0}), PoseAt({0.0, 3.0, 0.0})};
+  std::vector<RigidTransform> X_WB_{Standing({0.0, 0.0, 3.0}), Standing({0.0, 3.0, 0.0})};
   const IkSolver solver_{ShadowHand(), std::vector<const Shape*>{&ball_, &post_}};
 };
 
@@ -90,7 +90,7 @@ TEST_F(SmoothMotionTest, WhatStandsInTheWayIsGoneRoundBetweenTheFramesToo) {
   HandPose pose;
   CalcHandPose(ShadowHand(), motion[20].X_WH, motion[20].q, &pose);
   const Fingertip& tip = ShadowHand().tip(Finger::kMiddle);
-  X_WB_[1] = PoseAt(pose.CalcPoint(tip.link, tip.p_LT) + Vector3(0.0, 0.0, 0.018));
+  X_WB_[1] = Standing(pose.CalcPoint(tip.link, tip.p_LT) + Vector3(0.0, 0.0, 0.018));
   std::vector<HandDemand> demands = Demands(motion);
   demands.back().problem.contacts = {ContactOf(motion.back())};
   EXPECT_FALSE(IsClear(motion));

@@ -38,7 +38,7 @@ TEST_F(ManifestTest, EveryFileIsListedWithItsHash) {
   EXPECT_TRUE(manifest["libraries"].contains("mrpt"));
   EXPECT_TRUE(manifest.contains("git_hash"));
   EXPECT_EQ(manifest["program_sha256"], Sha256OfFile("/proc/self/exe"));
-  EXPECT_EQ(manifest["libraries"]["fcl"].get<std::string>().find("0."), 0U);
+  EXPECT_TRUE(manifest.contains("compiler"));
   EXPECT_EQ(manifest["inputs"]["score.safetensors"], std::string(64, 'a'));
   const std::vector<std::string> files = ListRunFiles(run_).files;
   EXPECT_EQ(files.size(), 16U);

@@ -19,6 +19,7 @@ TEST(MotionTableTest, ARowHasAFieldForEveryNameOfTheHeader) {
   task.contacts[1].on = true;
   MotionFrame frame;
   frame.clearance = 0.002;
+  frame.solved = true;
   frame.rung = LooseningRung::kCone80;
   const std::string header = MotionHeader(), row = MotionRow(task, frame);
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
