@@ -73,8 +73,7 @@ struct GraspResult {
   GraspFault fault;  ///< nothing if feasible
 };
 
-/// One sentence for a person: which fingers, and what stands in the way. `world` is that of the
-/// test.
+/// One sentence for a person: which fingers, and what stands in the way.
 std::string Explain(const GraspResult& result);
 
 /// How far contacts come, without the forces and reasons that only a report needs.

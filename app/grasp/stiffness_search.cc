@@ -73,11 +73,6 @@ std::vector<StiffnessSearch::Move> StiffnessSearch::FindMoves(const ContactChoic
   const Matrix6 K = CalcGraspStiffness(contacts, forces.forces, k_);
   Vector6 motion;
   motion << forces.least.shift, forces.least.turn / forces_.turn_length;
-  const auto with = [&](const Matrix6& others, const Move& move, const Vector3& f) -> Matrix6 {
-    const std::vector<WrenchContact> contact =
-        world_.ToWrenchContacts({choices_[move.contact].places[move.place]});
-    return others + CalcGraspStiffness(contact, f.transpose(), k_);
-  };
   struct Candidate {
     Move move;
     Matrix6 K;
@@ -87,8 +82,7 @@ std::vector<StiffnessSearch::Move> StiffnessSearch::FindMoves(const ContactChoic
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     const bool left_out = choice[i] == kLeftOut;
     const std::size_t at = left_out ? 0 : row++;
-    const bool is_fixed = choices_[i].places.size() < 2;
-    if (is_fixed) continue;
+    if (choices_[i].places.size() < 2) continue;  // fixed
     Matrix6 others = K;
     Vector3 f_old = Vector3::Zero(), nhat_old = Vector3::Zero();
     if (!left_out) {
@@ -96,13 +90,15 @@ std::vector<StiffnessSearch::Move> StiffnessSearch::FindMoves(const ContactChoic
       nhat_old = choices_[i].places[choice[i]].nhat_O;
       others -= CalcGraspStiffness({&contacts[at], 1}, f_old.transpose(), k_);
     }
+    const std::vector<WrenchContact> places = world_.ToWrenchContacts(choices_[i].places);
     for (int place = 0; place < static_cast<int>(choices_[i].places.size()); ++place) {
       if (place == choice[i]) continue;
       const Vector3& nhat = choices_[i].places[place].nhat_O;
       const double normal = left_out ? wrench_.f_min : -f_old.dot(nhat_old);
       const bool same_face = !left_out && nhat.dot(nhat_old) > kSameFace;
       Move move{static_cast<int>(i), place, 0.0};
-      const Matrix6 K_moved = with(others, move, same_face ? f_old : Vector3(-normal * nhat));
+      const Vector3 f = same_face ? f_old : Vector3(-normal * nhat);
+      const Matrix6 K_moved = others + CalcGraspStiffness({&places[place], 1}, f.transpose(), k_);
       move.stiffness = motion.dot(K_moved * motion);
       candidates.push_back({move, K_moved});
     }

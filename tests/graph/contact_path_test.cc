@@ -137,17 +137,7 @@ TEST(PathSearchTest, ManyPathsOfOneScoreAreCountedUpToALimitAndAllFound) {
 }
 
 TEST(PathSearchTest, ACopyGoesOnFromWhereItWasTaken) {
-  PathSearch search(MakeGraph(4), 2);
-  ContactPath path;
-  for (int i = 0; i < 5; ++i) ASSERT_TRUE(search.Next(&path));
-  PathSearch copy = search;
-  ContactPath a, b;
-  for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(search.Next(&a));
-    ASSERT_TRUE(copy.Next(&b));
-    EXPECT_EQ(a.nodes, b.nodes);
-    EXPECT_EQ(a.rank, b.rank);
-  }
+  ExpectCopyGoesOn(PathSearch(MakeGraph(4), 2));
 }
 
 TEST(FindSiblingsTest, AreThePathsThatLostByTheirLastNode) {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "app/graph/contact_graph.h"
+#include "app/graph/contact_path.h"
 
 namespace pregrasp {
 
@@ -76,6 +79,22 @@ inline ContactGraph MakeScoredGraph(const PlacementScorer& context, const Placem
   ContactGraph graph(MakeBoxMesh(kBoxSize), config);
   graph.Score(SignedDistance(Box{kBoxSize}), context, free, 1);
   return graph;
+}
+
+/// A copy of `search`, a PathSearch or PathExplorer, gives the paths that it gives itself.
+template <typename Search>
+void ExpectCopyGoesOn(Search search) {
+  ContactPath path;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(search.Next(&path));
+  Search copy = search;
+  ContactPath a, b;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(search.Next(&a));
+    ASSERT_TRUE(copy.Next(&b));
+    EXPECT_EQ(a.nodes, b.nodes);
+    EXPECT_EQ(a.rank, b.rank);
+    EXPECT_EQ(a.value, b.value);
+  }
 }
 
 }  // namespace pregrasp

@@ -128,17 +128,7 @@ TEST(PathExplorerTest, TiesAreCountedAndGoByRank) {
 }
 
 TEST(PathExplorerTest, ACopyGoesOnFromWhereItWasTaken) {
-  PathExplorer explorer(MakeExploredGraph(4), 2);
-  ContactPath path;
-  for (int i = 0; i < 5; ++i) ASSERT_TRUE(explorer.Next(&path));
-  PathExplorer copy = explorer;
-  ContactPath a, b;
-  for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(explorer.Next(&a));
-    ASSERT_TRUE(copy.Next(&b));
-    EXPECT_EQ(a.nodes, b.nodes);
-    EXPECT_EQ(a.value, b.value);
-  }
+  ExpectCopyGoesOn(PathExplorer(MakeExploredGraph(4), 2));
 }
 
 TEST(PathExplorerTest, NeedsAPrunedGraph) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/geometry/mass_properties.h"
+#include "app/grasp/grasp_world.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {
@@ -99,6 +100,17 @@ inline Scene FreeCartonScene() {
   Scene scene = CartonScene();
   scene.bodies.resize(2);
   return scene;
+}
+
+/// A ruler of 300 x 30 x 3 mm in free air, flat: its faces are z = +-1.5 mm in O.
+inline Scene FreeRulerScene() {
+  Scene scene = RulerScene(0.0);
+  scene.object().X_WB.translation().z() = 0.5;
+  return scene;
+}
+/// On its upper (`side` 1) or lower (-1) face.
+inline GraspContact OnRulerFace(Finger finger, double side, double x, double y) {
+  return {finger, {x, y, 0.0015 * side}, {0, 0, side}};
 }
 
 }  // namespace pregrasp

@@ -9,19 +9,10 @@
 namespace pregrasp {
 namespace {
 
-// A ruler of 300 x 30 x 3 mm in free air, flat: its faces are z = +-1.5 mm in O.
 class HoldSearchTest : public ::testing::Test {
  protected:
-  HoldSearchTest() : world_(FreeRuler(), ShadowHand()), places_(world_, world_.StartPoses()) {}
+  HoldSearchTest() : world_(FreeRulerScene(), ShadowHand()), places_(world_, world_.StartPoses()) {}
 
-  static Scene FreeRuler() {
-    Scene scene = RulerScene(0.0);
-    scene.object().X_WB.translation().z() = 0.5;
-    return scene;
-  }
-  static GraspContact OnFace(Finger finger, double side, double x, double y) {
-    return {finger, {x, y, 0.0015 * side}, {0, 0, side}};
-  }
   bool Holds(const std::vector<GraspContact>& contacts) const {
     return CalcForceStatus(world_, config_, contacts, Matrix3::Identity()) ==
            GraspStatus::kFeasible;
@@ -44,9 +35,9 @@ class HoldSearchTest : public ::testing::Test {
 TEST_F(HoldSearchTest, AThumbOutsideItsFingersComesBetweenThem) {
   // About the middle: the thumb on top presses beyond the fingers below, so that every push turns
   // the ruler the same way.
-  const std::vector<GraspContact> contacts = {OnFace(Finger::kThumb, 1, 0.031, 0.0),
-                                              OnFace(Finger::kIndex, -1, 0.022, 0.0),
-                                              OnFace(Finger::kMiddle, -1, -0.022, 0.0)};
+  const std::vector<GraspContact> contacts = {OnRulerFace(Finger::kThumb, 1, 0.031, 0.0),
+                                              OnRulerFace(Finger::kIndex, -1, 0.022, 0.0),
+                                              OnRulerFace(Finger::kMiddle, -1, -0.022, 0.0)};
   ASSERT_FALSE(Holds(contacts));
   std::vector<GraspContact> held;
   ASSERT_TRUE(Run(contacts, {}, &held));
@@ -62,9 +53,9 @@ TEST_F(HoldSearchTest, AThumbOutsideItsFingersComesBetweenThem) {
 }
 
 TEST_F(HoldSearchTest, AContactThatPressesIsNotMoved) {
-  const std::vector<GraspContact> contacts = {OnFace(Finger::kThumb, 1, 0.031, 0.0),
-                                              OnFace(Finger::kIndex, -1, 0.022, 0.0),
-                                              OnFace(Finger::kMiddle, -1, -0.022, 0.0)};
+  const std::vector<GraspContact> contacts = {OnRulerFace(Finger::kThumb, 1, 0.031, 0.0),
+                                              OnRulerFace(Finger::kIndex, -1, 0.022, 0.0),
+                                              OnRulerFace(Finger::kMiddle, -1, -0.022, 0.0)};
   std::vector<GraspContact> held;
   ASSERT_TRUE(Run(contacts, {contacts[0]}, &held));
   EXPECT_EQ(held[0].p_OC, contacts[0].p_OC);
@@ -74,9 +65,9 @@ TEST_F(HoldSearchTest, AContactThatPressesIsNotMoved) {
 }
 
 TEST_F(HoldSearchTest, ASetThatHoldsStaysAsItIs) {
-  const std::vector<GraspContact> contacts = {OnFace(Finger::kThumb, 1, 0.0, 0.0),
-                                              OnFace(Finger::kIndex, -1, 0.022, 0.0),
-                                              OnFace(Finger::kMiddle, -1, -0.022, 0.0)};
+  const std::vector<GraspContact> contacts = {OnRulerFace(Finger::kThumb, 1, 0.0, 0.0),
+                                              OnRulerFace(Finger::kIndex, -1, 0.022, 0.0),
+                                              OnRulerFace(Finger::kMiddle, -1, -0.022, 0.0)};
   ASSERT_TRUE(Holds(contacts));
   std::vector<GraspContact> held;
   ASSERT_TRUE(Run(contacts, {}, &held));
@@ -88,9 +79,9 @@ TEST_F(HoldSearchTest, WhereNothingWithinReachHoldsItSaysSo) {
   Scene scene = FlatScene({0.2, 0.25, 0.003}, 0.03, 0.0);
   const GraspWorld card(scene, ShadowHand());
   const ContactPlaces places(card, card.StartPoses());
-  const std::vector<GraspContact> contacts = {OnFace(Finger::kThumb, 1, 0.0, -0.02),
-                                              OnFace(Finger::kIndex, 1, 0.0, 0.02),
-                                              OnFace(Finger::kMiddle, 1, 0.03, 0.0)};
+  const std::vector<GraspContact> contacts = {OnRulerFace(Finger::kThumb, 1, 0.0, -0.02),
+                                              OnRulerFace(Finger::kIndex, 1, 0.0, 0.02),
+                                              OnRulerFace(Finger::kMiddle, 1, 0.03, 0.0)};
   const auto choices = FindChoices(places, contacts, {}, 0.010);
   HoldSearch search(card, config_, choices, Matrix3::Identity());
   ContactChoice choice(contacts.size(), 0);
@@ -105,8 +96,8 @@ TEST_F(HoldSearchTest, MostSetsThatRandomMovesRepairAreRepaired) {
     Rng rng(i);
     std::vector<GraspContact> contacts;
     for (const Finger finger : {Finger::kThumb, Finger::kIndex, Finger::kMiddle}) {
-      contacts.push_back(OnFace(finger, finger == Finger::kThumb ? 1 : -1, rng.Uniform(-0.05, 0.05),
-                                rng.Uniform(-0.01, 0.01)));
+      contacts.push_back(OnRulerFace(finger, finger == Finger::kThumb ? 1 : -1,
+                                     rng.Uniform(-0.05, 0.05), rng.Uniform(-0.01, 0.01)));
     }
     if (!(FindNearestTips(contacts).gap >= 0.0) || Holds(contacts)) continue;
     const auto choices = FindChoices(places_, contacts, {}, 0.010);

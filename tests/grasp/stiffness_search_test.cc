@@ -7,24 +7,17 @@
 namespace pregrasp {
 namespace {
 
-// A ruler of 300 x 30 x 3 mm in free air, flat: its faces are z = +-1.5 mm in O.
 class StiffnessSearchTest : public ::testing::Test {
  protected:
-  StiffnessSearchTest() : world_(FreeRuler(), ShadowHand()), places_(world_, world_.StartPoses()) {}
+  StiffnessSearchTest()
+      : world_(FreeRulerScene(), ShadowHand()), places_(world_, world_.StartPoses()) {}
 
-  static Scene FreeRuler() {
-    Scene scene = RulerScene(0.0);
-    scene.object().X_WB.translation().z() = 0.5;
-    return scene;
-  }
-  static GraspContact OnFace(Finger finger, double side, double x, double y) {
-    return {finger, {x, y, 0.0015 * side}, {0, 0, side}};
-  }
   // Two fingers above and three below, nearly on the ruler's long axis, about which it turns over.
   static std::vector<GraspContact> NearTheAxis() {
-    return {OnFace(Finger::kThumb, 1, 0.0, 0.0), OnFace(Finger::kIndex, -1, 0.022, 0.0),
-            OnFace(Finger::kMiddle, -1, -0.022, 0.0), OnFace(Finger::kRing, -1, 0.0, 0.001),
-            OnFace(Finger::kLittle, 1, -0.022, 0.001)};
+    return {OnRulerFace(Finger::kThumb, 1, 0.0, 0.0), OnRulerFace(Finger::kIndex, -1, 0.022, 0.0),
+            OnRulerFace(Finger::kMiddle, -1, -0.022, 0.0),
+            OnRulerFace(Finger::kRing, -1, 0.0, 0.001),
+            OnRulerFace(Finger::kLittle, 1, -0.022, 0.001)};
   }
   bool Holds(const std::vector<GraspContact>& contacts) const {
     return CalcForceStatus(world_, config_, contacts, Matrix3::Identity()) ==
