@@ -42,8 +42,7 @@ bool SolveNext(lua_State* L, LuaMotion& motion) {
 void FinishMotion(lua_State* L, LuaMotion& motion) {
   if (IsFinished(motion)) return;
   while (SolveNext(L, motion)) ThrowIfInterrupted();
-  motion.node =
-      &pregrasp::FinishMotion(motion.session->timeline(), *motion.node, nlohmann::json::object());
+  motion.node = &pregrasp::FinishMotion(motion.session->timeline(), *motion.node);
   CountMemory(L, kMotionKib);
 }
 

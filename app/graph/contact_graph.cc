@@ -14,28 +14,32 @@ namespace {
 // Contacts of one finger on one triangle: drawn once, used by every node with that triangle.
 struct TriangleSamples {
   std::vector<Placement::Contact> contacts;
-  std::vector<bool> occluded;
-  bool fits = false;  // at one of these, or of kFitSamples others
+  std::vector<bool> occluded;  // by the surroundings or by the object itself
+  std::vector<bool> enclosed;  // by the latter
+  bool fits = false;           // at one of these, or of kFitSamples others
 };
 
 std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& mesh, int samples,
                                              const SignedDistance& shape,
                                              const PlacementScorer& context, std::uint64_t seed) {
   std::vector<TriangleSamples> all(mesh.F.rows());
+  const auto draw = [&](int t, Rng& rng) {
+    const double u = rng.Uniform();
+    const double v = rng.Uniform();
+    return ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape);
+  };
   for (int t = 0; t < static_cast<int>(all.size()); ++t) {
     Rng rng(seed, RngStream::kGraphSamples, static_cast<int>(finger), t);
     for (int s = 0; s < samples; ++s) {
-      const double u = rng.Uniform();
-      const double v = rng.Uniform();
-      all[t].contacts.push_back(ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape));
-      all[t].occluded.push_back(context.IsOccluded(finger, all[t].contacts.back()));
+      const Placement::Contact contact = draw(t, rng);
+      all[t].contacts.push_back(contact);
+      all[t].enclosed.push_back(!HasRoom(finger, contact, shape));
+      all[t].occluded.push_back(all[t].enclosed.back() || context.IsOccluded(finger, contact));
       all[t].fits = all[t].fits || !all[t].occluded.back();
     }
     for (int s = 0; s < kFitSamples && !all[t].fits; ++s) {
-      const double u = rng.Uniform();
-      const double v = rng.Uniform();
-      all[t].fits = !context.IsOccluded(
-          finger, ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape));
+      const Placement::Contact contact = draw(t, rng);
+      all[t].fits = HasRoom(finger, contact, shape) && !context.IsOccluded(finger, contact);
     }
   }
   return all;
@@ -120,12 +124,14 @@ class NodeSampler {
   }
 
  private:
-  // In context, a fingertip that cannot be where it is asked to be is worth nothing.
+  // A fingertip that cannot be where it is asked to be is worth nothing; what is around the object
+  // counts in context only.
   void ClearOccluded(const PlacementScorer& scorer, const TriangleSamples& a,
                      const TriangleSamples& b, std::vector<double>& scores) const {
-    if (&scorer != &context_) return;
+    std::vector<bool> TriangleSamples::*const blocked =
+        &scorer == &context_ ? &TriangleSamples::occluded : &TriangleSamples::enclosed;
     for (int s = 0; s < config_.samples; ++s) {
-      if (a.occluded[s] || b.occluded[s]) scores[s] = 0.0;
+      if ((a.*blocked)[s] || (b.*blocked)[s]) scores[s] = 0.0;
     }
   }
 

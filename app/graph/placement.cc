@@ -4,6 +4,11 @@
 
 namespace pregrasp {
 
+bool HasRoom(Finger finger, const Placement::Contact& contact, const SignedDistance& shape) {
+  const Vector3 p_OTip = FingertipCentre(finger, contact.p_OC, contact.nhat_O);
+  return shape.Calc(p_OTip) >= FingertipRadius(finger) - kOwnOverlapAllowed;
+}
+
 Placement::Contact ContactOnTriangle(const TriangleMesh& mesh, int t, const Vector3& w,
                                      const SignedDistance& shape) {
   Vector3 p_O = Vector3::Zero();

@@ -33,6 +33,12 @@ inline double CalcTipGap(const Placement& placement) {
   return CalcTipGap(Finger::kThumb, centre(Finger::kThumb), Finger::kIndex, centre(Finger::kIndex));
 }
 
+/// Whether the object itself leaves room for the fingertip that touches at the contact: its sphere
+/// overlaps it nowhere by more than kOwnOverlapAllowed. Not so in a hole or a groove narrower than
+/// the tip.
+bool HasRoom(Finger finger, const Placement::Contact& contact, const SignedDistance& shape);
+inline constexpr double kOwnOverlapAllowed = 3e-4;  ///< [m]
+
 /// Judges placements in one state of the world: the score function bound to an object cloud and a
 /// signed distance. Implementations are immutable and safe to call from several threads.
 class PlacementScorer {

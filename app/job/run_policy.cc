@@ -38,6 +38,28 @@ const Node* TakePath(Timeline& timeline, const Node& graph, int rank) {
   return &timeline.Do(graph, Verb::kPath, {{"rank", rank}});
 }
 
+// What is to be done next to a motion that has begun; nothing when it is finished.
+std::optional<Verb> NextOfMotion(const Timeline& timeline, const Node& node) {
+  const auto state = timeline.GetState(node);
+  const MotionState& motion = *state->motion_state;
+  if (motion.solved_keys.size() < motion.keys.size()) return Verb::kKeyframe;
+  if (!motion.filled) return Verb::kFill;
+  if (!motion.finished) return Verb::kSmooth;
+  return std::nullopt;
+}
+
+// Why a motion is none.
+std::string ExplainFailure(const HandMotion& motion, const MotionState& state) {
+  for (const int key : state.solved_keys) {
+    if (!state.keys[key].failed()) continue;
+    const MotionFrameTask& frame = state.task->frames[state.task->keyframes[key]];
+    return fmt::format("the hand has no pose at keyframe {} of {} ({})", key + 1, state.keys.size(),
+                       MotionPhaseName(frame.phase));
+  }
+  if (state.is_hopeless()) return "no way was found for the hand between two keyframes";
+  return fmt::format("the hand motion fails in {} frames", motion.Summarize(state).failed);
+}
+
 class Runner {
  public:
   Runner(Timeline& timeline, const RunConfig& config,
@@ -135,11 +157,22 @@ class Runner {
     for (const int number : order) {
       if (tried == config_.motions || !state->lifts.at(number)->held) break;
       Report(name + ", hand motion", tried++, config_.motions);
-      const Node& moved = FinishMotion(timeline_, grasps, {{"grasp", number}});
+      const Node& moved = TryMotion(grasps, number);
       if (best == &grasps || best->progress < moved.progress) best = &moved;
       if (moved.progress.reached == Progress::Reached::kOk) return ShowFrames(timeline_, moved);
     }
     return *best;
+  }
+
+  // Keyframes, in-betweens and smoothing, until there is no hope of a motion without failure.
+  const Node& TryMotion(const Node& grasps, int number) {
+    const Node* at = &timeline_.Do(grasps, Verb::kKeyframe, {{"grasp", number}});
+    while (const std::optional<Verb> verb = NextOfMotion(timeline_, *at)) {
+      ThrowIfInterrupted();
+      if (timeline_.GetState(*at)->motion_state->is_hopeless()) break;
+      at = &timeline_.Do(*at, *verb);
+    }
+    return *at;
   }
 
   std::string Explain(const Node& end) const {
@@ -176,9 +209,7 @@ class Runner {
                          timeline_.job().scene().bodies[neighbours.worst->value].name);
     }
     if (end.progress.reached != Progress::Reached::kOk) {
-      return head + lifted +
-             fmt::format(", but the hand motion fails in {} frames",
-                         state->motion->Summarize(*state->motion_state).failed);
+      return head + lifted + ", but " + ExplainFailure(*state->motion, *state->motion_state);
     }
     return head + lifted + ", and the hand gets there";
   }
@@ -275,20 +306,12 @@ std::vector<int> OrderGrasps(const JobState& state) {
   return order;
 }
 
-const Node& FinishMotion(Timeline& timeline, const Node& node, nlohmann::json options) {
+const Node& FinishMotion(Timeline& timeline, const Node& node) {
   const Node* at = &node;
-  const auto left = [&] {
-    const auto state = timeline.GetState(*at);
-    return !state->motion ||
-           state->motion_state->solved_keys.size() < state->motion->task().keyframes.size();
-  };
-  while (left()) {
+  while (const std::optional<Verb> verb = NextOfMotion(timeline, *at)) {
     ThrowIfInterrupted();
-    at = &timeline.Do(*at, Verb::kKeyframe, std::move(options));
-    options = nlohmann::json::object();
+    at = &timeline.Do(*at, *verb);
   }
-  if (!timeline.GetState(*at)->motion_state->filled) at = &timeline.Do(*at, Verb::kFill);
-  if (!timeline.GetState(*at)->motion_state->finished) at = &timeline.Do(*at, Verb::kSmooth);
   return *at;
 }
 

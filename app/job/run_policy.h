@@ -64,10 +64,9 @@ const Timeline::Node& CompleteGrasps(Timeline& timeline, const Timeline::Node& c
 /// CompleteGrasps.
 std::vector<int> OrderGrasps(const JobState& state);
 
-/// Solves the keyframes that are left and the frames between them, and smooths.
-/// @param options  of the next keyframe: {grasp, settings} where the motion has not begun.
-const Timeline::Node& FinishMotion(Timeline& timeline, const Timeline::Node& node,
-                                   nlohmann::json options);
+/// Solves the keyframes that are left of a motion that has begun and the frames between them, and
+/// smooths, whether there is hope of a motion without failure or not.
+const Timeline::Node& FinishMotion(Timeline& timeline, const Timeline::Node& node);
 
 /// Shows every frame of a finished motion as a step. @returns the last one.
 const Timeline::Node& ShowFrames(Timeline& timeline, const Timeline::Node& finished);

@@ -45,8 +45,8 @@ bool AllFeasibleLifted(const JobState& state) {
   return true;
 }
 
-bool IsMotionFinished(const JobState& state) {
-  return state.motion && state.motion_state->finished;
+bool IsMotionDecided(const JobState& state) {
+  return state.motion && (state.motion_state->finished || state.motion_state->is_hopeless());
 }
 
 void FillTrajectory(const JobState& state, const Node& node, RunSummary& summary) {
@@ -240,7 +240,7 @@ std::optional<std::string> StatusAt(const Timeline& timeline, const Node& node) 
       if (AllGraspsTried(*state) && AllFeasibleLifted(*state)) return "lift_failed";
       return std::nullopt;
     case Progress::Reached::kLifted:
-      if (IsMotionFinished(*state)) return "motion_failed";
+      if (IsMotionDecided(*state)) return "motion_failed";
       return std::nullopt;
     case Progress::Reached::kMoved:
       return "neighbours_disturbed";

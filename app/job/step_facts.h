@@ -471,6 +471,7 @@ struct CertifyFacts {
   std::optional<RobustFacts> robust;  ///< of certified plans
   NeighbourFacts neighbours;          ///< at the end of the hold
   std::vector<PlaceFacts> pressing;
+  std::vector<double> waits;  ///< before each stage, for the hand to get there [s]
   std::vector<StageFacts> stages;
 
   template <typename Self, typename Visit>
@@ -497,6 +498,7 @@ struct CertifyFacts {
     visit("robust", self.robust);
     visit("neighbours", self.neighbours);
     visit("pressing", self.pressing);
+    visit("waits", self.waits);
     visit("stages", self.stages);
   }
 };

@@ -91,6 +91,12 @@ const char* LooseningRungName(LooseningRung rung) {
   return kNames[static_cast<int>(rung)];
 }
 
+bool MotionState::is_hopeless() const {
+  const auto has_failed = [this](int key) { return keys[key].failed(); };
+  return std::any_of(solved_keys.begin(), solved_keys.end(), has_failed) ||
+         std::find(detours.begin(), detours.end(), DetourKind::kBlocked) != detours.end();
+}
+
 std::vector<HandConfiguration> ConfigurationsOf(const std::vector<MotionFrame>& frames) {
   std::vector<HandConfiguration> motion;
   for (const MotionFrame& frame : frames) motion.push_back(frame.configuration);
@@ -260,14 +266,19 @@ bool HandMotion::SolveKeyframe(MotionState& state) const {
   return true;
 }
 
-// Whether nothing happens in an interval but the hand's way: no finger is on in between, and the
-// bodies stand.
+// Whether nothing happens in an interval but the hand's way: the bodies stand, and fingers that are
+// on in between stay where they are at both ends.
 bool HandMotion::IsIdle(const MotionTask& task, int interval) const {
   constexpr double kStands = 2e-4;  // [m], and of a point 10 cm off as it turns
   const int begin = task.keyframes[interval], end = task.keyframes[interval + 1];
   for (int frame = begin + 1; frame <= end; ++frame) {
-    for (const auto& contact : task.frames[frame].contacts) {
-      if (contact.on && frame < end) return false;
+    for (int f = 0; f < kNumFingers && frame < end; ++f) {
+      const Placement::Contact& contact = task.frames[frame].contacts[f];
+      if (!contact.on) continue;
+      for (const int key : {begin, end}) {
+        const Placement::Contact& at_key = task.frames[key].contacts[f];
+        if (!at_key.on || !((at_key.p_OC - contact.p_OC).norm() <= kStands)) return false;
+      }
     }
     for (std::size_t b = 0; b < task.frames[frame].X_WB.size(); ++b) {
       const RigidTransform &X = task.frames[frame].X_WB[b], &X_end = task.frames[end].X_WB[b];
@@ -280,8 +291,9 @@ bool HandMotion::IsIdle(const MotionTask& task, int interval) const {
 }
 
 // Fills an interval in which the bodies stand along a way without collision. A free one gets the
-// time that it takes from rest to rest.
-void HandMotion::FillAlongWay(MotionState& state, int interval) const {
+// time that it takes from rest to rest. False, with nothing filled in, if there is no way and the
+// time is given.
+bool HandMotion::FillAlongWay(MotionState& state, int interval) const {
   const MotionTask& task = *state.task;
   const MotionFrame &begin = state.keys[interval], &end = state.keys[interval + 1];
   const DetourResult way = FindDetour(
@@ -289,6 +301,7 @@ void HandMotion::FillAlongWay(MotionState& state, int interval) const {
       MakeDetour(task.frames[task.keyframes[interval]], task.frames[task.keyframes[interval + 1]],
                  begin.configuration, end.configuration),
       Rng(seed_, RngStream::kMotionDetour, 0, interval));
+  if (way.kind == DetourKind::kBlocked && !task.is_free[interval]) return false;
   state.detours.insert(state.detours.begin(), way.kind);
   std::vector<double> times{0.0};
   for (std::size_t i = 1; i < way.points.size(); ++i) {
@@ -315,6 +328,7 @@ void HandMotion::FillAlongWay(MotionState& state, int interval) const {
     between.push_back(frame);
   }
   state.frames.insert(state.frames.begin(), between.begin(), between.end());
+  return true;
 }
 
 // In-betweens at the speed of the physics, last first. In the object's frame, so that a hand in
@@ -361,11 +375,8 @@ void HandMotion::FillInBetweens(MotionState& state) const {
   state.frames = {state.keys.back()};
   for (int interval = task_->num_intervals() - 1; interval >= 0; --interval) {
     ThrowIfInterrupted();
-    if (task_->is_free[interval] || IsIdle(*task_, interval)) {
-      FillAlongWay(state, interval);
-    } else {
-      FillTimed(state, interval);
-    }
+    const bool stands = task_->is_free[interval] || IsIdle(*task_, interval);
+    if (!stands || !FillAlongWay(state, interval)) FillTimed(state, interval);
     state.frames.insert(state.frames.begin(), state.keys[interval]);
   }
   PREGRASP_CHECK(state.frames.size() == state.task->frames.size(), state.frames.size());

@@ -76,6 +76,10 @@ struct MotionState {
   bool filled = false;              ///< in-betweens done
   bool finished = false;            ///< smoothed, timed and checked
   int iterations = 0;               ///< of smoothing
+
+  /// No motion without failure can come of it any more: a keyframe has no pose, or a way that the
+  /// hand has all the time for is blocked.
+  bool is_hopeless() const;
 };
 
 std::vector<HandConfiguration> ConfigurationsOf(const std::vector<MotionFrame>& frames);
@@ -130,7 +134,7 @@ class HandMotion {
                            const HandConfiguration& from, const HandConfiguration& to) const;
   std::vector<int> KeyframeSequence() const;
   bool IsIdle(const MotionTask& task, int interval) const;
-  void FillAlongWay(MotionState& state, int interval) const;
+  bool FillAlongWay(MotionState& state, int interval) const;
   void FillTimed(MotionState& state, int interval) const;
 
   const IkSolver& solver_;

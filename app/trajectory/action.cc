@@ -96,6 +96,7 @@ RelativePlan ActionSpace::Decode(const std::vector<double>& action) const {
       out.kept = out.on && stage > 0 && plan.stages[stage - 1][finger].on;
       if (out.on && !out.kept) {
         out.contact = ContactAt(stage, finger, u[1], u[2]);
+        out.on = HasRoom(static_cast<Finger>(finger), out.contact, *shape_);
       }
       u += 3;
       for (int k = 0; k < knots_; ++k, u += kKnotSize) {

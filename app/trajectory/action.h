@@ -47,7 +47,8 @@ class ActionSpace {
   /// the vector scaled by tanh of its length, so that directions are uniform. Travel: tanh. A
   /// finger that was on in the stage before keeps its contact (paper: it may change its location
   /// only after a stage without contact). A contact of the first stage where the tip does not fit
-  /// goes to the nearest of kFitGrid^2 places on the triangle where it does, if there is one.
+  /// goes to the nearest of kFitGrid^2 places on the triangle where it does, if there is one. A
+  /// finger for which the object itself has no room there (HasRoom) stays off.
   RelativePlan Decode(const std::vector<double>& action) const;
 
   /// The contact that Decode puts a finger on with these two numbers for its place.

@@ -16,11 +16,13 @@ namespace {
 
 TipFits MakeTipFits(const MppiProblem& problem) {
   const EnvironmentDistance* environment = problem.environment;
+  const SignedDistance* shape = problem.shape;
   std::vector<RigidTransform> X_WB = problem.world->GetPoses(problem.start);
-  return [environment, X_WB = std::move(X_WB)](Finger finger, const Placement::Contact& contact) {
+  return [=, X_WB = std::move(X_WB)](Finger finger, const Placement::Contact& contact) {
     const double radius = FingertipRadius(finger);
     const Vector3 p_WTip = X_WB.front() * FingertipCentre(finger, contact.p_OC, contact.nhat_O);
-    return radius - environment->Calc(p_WTip, X_WB).phi <= kTipOverlapAllowed;
+    return HasRoom(finger, contact, *shape) &&
+           radius - environment->Calc(p_WTip, X_WB).phi <= kTipOverlapAllowed;
   };
 }
 

@@ -50,6 +50,10 @@ struct WorldPlan {
 struct PlanTiming {
   double stage_seconds = 0.8;  ///< of one contact stage (findings: .4 to 1.3 all work)
   int knots = 4;               ///< K, force targets a stage
+  /// Before a stage that puts a finger on a new contact, the hand is given `transfer_seconds` +
+  /// the fingertip's way / `transfer_speed`; fingers that are kept hold their last targets.
+  double transfer_seconds = 0.3;
+  double transfer_speed = 0.15;  ///< [m/s]
   /// The last targets are held this long before the last score: as long as a certificate does, so
   /// that what creeps away is not found out then.
   double hold_seconds = 1.5;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
@@ -50,25 +51,33 @@ class PlanRunner {
   const WorldState& state() const { return state_; }
   bool diverged() const { return outcome_.diverged; }
 
-  // Puts the fingers of a stage on or off. F has on, kept and contact. With `only_where_they_fit`,
-  // a finger whose tip does not fit where it is asked to be stays away.
+  // Puts the fingers of a stage on or off. F has on, kept and contact. Those that are not kept let
+  // go at once; those that come are on once the hand has had the time to bring them (CalcWait).
+  // With `only_where_they_fit`, a finger whose tip does not fit where it is asked to be stays away.
   template <typename F>
   void StartStage(const std::array<F, kNumPlanningFingers>& fingers, bool only_where_they_fit) {
+    for (int j = 0; j < kNumPlanningFingers; ++j) {
+      if (state_.fingers[j].on) p_WLast_[j] = CalcContactPlace(j);
+    }
+    const double seconds = CalcWait(fingers);
+    for (int j = 0; j < kNumPlanningFingers; ++j) {
+      const bool stays = fingers[j].on && fingers[j].kept;
+      if (!stays) world_.LiftFinger(state_, static_cast<Finger>(j));
+    }
+    finite_ = state_;
+    for (int i = StepsIn(seconds); i > 0 && !outcome_.diverged; --i) Step();
+    outcome_.waits.push_back(seconds);
     outcome_.plan.stages.emplace_back();
     for (int j = 0; j < kNumPlanningFingers; ++j) {
       const Finger finger = static_cast<Finger>(j);
       auto& used = outcome_.plan.stages.back()[j];
-      used.on = fingers[j].on;
-      used.kept = fingers[j].kept;
       used.contact = fingers[j].contact;
-      if (!fingers[j].on) {
-        world_.LiftFinger(state_, finger);
-      } else if (!fingers[j].kept) {
+      if (fingers[j].on && !fingers[j].kept) {
         world_.PutFinger(state_, finger, fingers[j].contact.p_OC);
         if (only_where_they_fit && !Fits(finger)) world_.LiftFinger(state_, finger);
       }
       used.on = state_.fingers[j].on;
-      used.kept = used.kept && used.on;
+      used.kept = fingers[j].kept && used.on;
     }
     outcome_.stage_starts.push_back(state_);
   }
@@ -128,6 +137,27 @@ class PlanRunner {
     }
     KeepBooks();
     if (trace_) trace_->push_back({state_, contacts_});
+  }
+
+  Vector3 CalcContactPlace(int finger) const {
+    return state_.bodies.front().X_WB() * state_.fingers[finger].p_OC;
+  }
+
+  // How long the hand needs to bring the fingers of a stage to new contacts: none at the plan's
+  // start, where it has all the time. A finger comes from where it was on last, or, if it has not
+  // been on, from where the other one was.
+  template <typename F>
+  double CalcWait(const std::array<F, kNumPlanningFingers>& fingers) const {
+    double seconds = 0.0;
+    for (int j = 0; j < kNumPlanningFingers; ++j) {
+      if (!fingers[j].on || fingers[j].kept) continue;
+      const auto& from = p_WLast_[j] ? p_WLast_[j] : p_WLast_[1 - j];
+      if (!from) continue;
+      const Vector3 to = state_.bodies.front().X_WB() * fingers[j].contact.p_OC;
+      seconds = std::max(seconds,
+                         timing_.transfer_seconds + (to - *from).norm() / timing_.transfer_speed);
+    }
+    return seconds;
   }
 
   bool Fits(Finger finger) const {
@@ -192,7 +222,8 @@ class PlanRunner {
   std::vector<TraceRow>* trace_;
   WorldState state_;
   WorldState start_;
-  WorldState finite_;  // at the start of the knot, or of the hold
+  WorldState finite_;  // at the start of the knot, of the wait or of the hold
+  std::array<std::optional<Vector3>, kNumPlanningFingers> p_WLast_;  // contacts, when last on
   std::vector<ContactPoint> contacts_;
   PlanOutcome outcome_;
   int steps_per_knot_ = 0, steps_in_hold_ = 0;

@@ -430,6 +430,8 @@ function Path:optimize(options) end
 ---@field progress? number what counts as progress: the best cost falls by this share of the score's spread, 0 to 100; 0.1
 ---@field max_travel? number of a target in a knot, each axis, 0 to 1 m; 0.03
 ---@field stage_seconds? number of one contact stage, 0.05 to 10 s; 0.8
+---@field transfer_seconds? number before a finger is put on a new contact, and as long as its way there takes, 0 to 30 s; 0.3
+---@field transfer_speed? number of a fingertip on its way to a new contact, 0.01 to 10 m/s; 0.15
 ---@field knots? integer force targets a stage; a fork keeps it, 1 to 100; 4
 ---@field hold_seconds? number the last targets are held before the last score, 0 to 30 s; 1.5
 ---@field room? number weight: share of contact sets that hold and that the surroundings leave free at the end, 0 to 1000; 1
