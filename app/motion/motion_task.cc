@@ -15,6 +15,7 @@ constexpr double kStill = 1e-4;        // a body that moves less than this stand
 constexpr double kStillDeg = 0.1;      // and turns less than this [degrees]
 constexpr double kSameContact = 2e-3;  // a finger keeps its contact if it is this near [m]
 constexpr int kMaxPosesOfWay = 9;      // from one frame to the next
+constexpr double kBriefly = 0.1;       // a contact that is lost this long is kept [s]
 
 Contacts ContactsOf(const WorldState& state) {
   Contacts contacts{};
@@ -23,6 +24,28 @@ Contacts ContactsOf(const WorldState& state) {
     contacts[j] = {tip.on, tip.p_OC, tip.nhat_O};
   }
   return contacts;
+}
+
+// The contacts along a trajectory, by row: of the fingers that touch. One that is on without
+// touching has no place on the object, and the hand need not be there; unless it has been put on
+// or has touched just before, and touches again at once.
+std::vector<Contacts> FindTouches(const std::vector<TraceRow>& trace) {
+  std::vector<Contacts> touches(trace.size());
+  for (int j = 0; j < kNumFingers; ++j) {
+    std::size_t touched = 0;  // when it last did
+    for (std::size_t i = 1; i < trace.size(); ++i) {
+      const FingertipState& tip = trace[i].state.fingers[j];
+      if (!tip.on) continue;
+      if (!trace[i - 1].state.fingers[j].on) touched = i - 1;
+      if (!tip.touching) continue;
+      const bool briefly = trace[i].state.t - trace[touched].state.t <= kBriefly;
+      for (std::size_t k = briefly ? touched + 1 : i; k <= i; ++k) {
+        touches[k][j] = ContactsOf(trace[k].state)[j];
+      }
+      touched = i;
+    }
+  }
+  return touches;
 }
 
 bool AnyOn(const Contacts& contacts) {
@@ -46,10 +69,20 @@ Contacts Shared(const Contacts& a, const Contacts& b) {
   return shared;
 }
 
+// A simulation, and the contacts at each row of it.
+struct Simulation {
+  const std::vector<TraceRow>& trace;
+  std::vector<Contacts> contacts;
+
+  double begin() const { return trace.front().state.t; }
+  double end() const { return trace.back().state.t; }
+};
+
 // Rows of a simulation between two times.
 class Rows {
  public:
-  Rows(const std::vector<TraceRow>& trace, double begin, double end) : trace_(trace) {
+  Rows(const Simulation& simulation, double begin, double end)
+      : trace_(simulation.trace), contacts_(simulation.contacts) {
     first_ = IndexAt(begin);
     last_ = IndexAt(end);
   }
@@ -63,6 +96,7 @@ class Rows {
     return std::clamp(IndexAt(t), first_, last_);
   }
   const WorldState& operator[](int row) const { return trace_[row].state; }
+  const Contacts& ContactsAt(int row) const { return contacts_[row]; }
 
  private:
   // The row nearest to time t.
@@ -77,24 +111,25 @@ class Rows {
   }
 
   const std::vector<TraceRow>& trace_;
+  const std::vector<Contacts>& contacts_;
   int first_ = 0, last_ = 0;
 };
 
-// From when on nothing moves to the trace's end, and no finger changes [s].
-double FindStill(const std::vector<TraceRow>& trace) {
-  const WorldState& end = trace.back().state;
-  const Contacts contacts = ContactsOf(end);
+// From when on nothing moves to the simulation's end, and no finger changes [s].
+double FindStill(const Simulation& simulation) {
+  const WorldState& end = simulation.trace.back().state;
   double still = end.t;
-  for (auto row = trace.rbegin(); row != trace.rend(); ++row) {
+  for (std::size_t row = simulation.trace.size(); row-- > 0;) {
+    const WorldState& state = simulation.trace[row].state;
     for (std::size_t i = 0; i < end.bodies.size(); ++i) {
-      const BodyState &a = row->state.bodies[i], &b = end.bodies[i];
+      const BodyState &a = state.bodies[i], &b = end.bodies[i];
       if (!((a.p_WB - b.p_WB).norm() <= kStill) ||
           !(RadToDeg(a.q_WB.angularDistance(b.q_WB)) <= kStillDeg)) {
         return still;
       }
     }
-    if (!SameFingers(ContactsOf(row->state), contacts)) return still;
-    still = row->state.t;
+    if (!SameFingers(simulation.contacts[row], simulation.contacts.back())) return still;
+    still = state.t;
   }
   return still;
 }
@@ -127,7 +162,7 @@ class TaskBuilder {
     int before = rows.first();
     for (int i = 1; i <= count; ++i) {
       const int row = rows.AtStep(i, count);
-      const Contacts contacts = ContactsOf(rows[row]);
+      const Contacts& contacts = rows.ContactsAt(row);
       const bool is_transit = phase == MotionPhase::kContact && !AnyOn(contacts);
       // Keyframes are where fingers touch; without any, the way to the next contact decides.
       const bool changes = !SameFingers(contacts, task_.frames.back().contacts);
@@ -197,24 +232,27 @@ MotionTask BuildMotionTask(const World& world, const std::vector<TraceRow>& trac
                            const MotionLift& lift, const MotionTiming& timing) {
   PREGRASP_CHECK(trace.size() >= 2 && lift.trace.size() >= 2, trace.size(), lift.trace.size());
   PREGRASP_CHECK(timing.fps > 0.0, timing.fps);
+  const Simulation plan{trace, FindTouches(trace)};
+  Simulation lifting{lift.trace, {}};
+  for (const TraceRow& row : lift.trace) lifting.contacts.push_back(ContactsOf(row.state));
   TaskBuilder task(world, timing.fps);
   // A finger is put on at the end of one step and is on in the row of the next.
   task.Add(MotionPhase::kApproach, trace.front().state, {});
   task.MarkKey(true);
-  const Contacts first = ContactsOf(trace[1].state);
+  const Contacts& first = plan.contacts[1];
   task.Add(AnyOn(first) ? MotionPhase::kContact : MotionPhase::kTransit, trace.front().state,
            first);
   task.MarkKey(true);
-  task.AddRows(MotionPhase::kContact, Rows(trace, trace.front().state.t, FindStill(trace)));
+  task.AddRows(MotionPhase::kContact, Rows(plan, plan.begin(), FindStill(plan)));
 
-  const Rows handover(lift.trace, lift.trace.front().state.t, lift.closing_t);
+  const Rows handover(lifting, lifting.begin(), lift.closing_t);
   task.AddRows(MotionPhase::kClosing, handover);
-  const Rows closing(lift.trace, lift.closing_t, lift.lift_t);
+  const Rows closing(lifting, lift.closing_t, lift.lift_t);
   task.Add(MotionPhase::kClosing, closing[closing.first()],
-           ContactsOf(closing[std::min(closing.first() + 1, closing.last())]));
+           closing.ContactsAt(std::min(closing.first() + 1, closing.last())));
   task.MarkKey(true);
   task.AddRows(MotionPhase::kClosing, closing);
-  task.AddRows(MotionPhase::kLift, Rows(lift.trace, lift.lift_t, lift.trace.back().state.t));
+  task.AddRows(MotionPhase::kLift, Rows(lifting, lift.lift_t, lifting.end()));
   return task.Finish();
 }
 
