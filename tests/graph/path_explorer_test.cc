@@ -100,7 +100,9 @@ TEST(PathExplorerTest, ValuesAreScoresOverWhatPathsBeforeHaveTriedAndNeverRise) 
     const double share = graph.nodes()[path.nodes[0]].s_c / best;
     EXPECT_NEAR(path.value, std::max(PathExplorer::kLeastScore, share) / (1.0 + path.repeats),
                 1e-12);
-    if (i > 0) EXPECT_LE(path.value, paths[i - 1].value);
+    if (i > 0) {
+      EXPECT_LE(path.value, paths[i - 1].value);
+    }
   }
 }
 

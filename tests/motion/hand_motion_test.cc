@@ -184,10 +184,42 @@ TEST_F(HandMotionTest, BetweenContactStagesWithoutAFingerTheHandIsInTransit) {
     const char initial = MotionPhaseName(frame.phase)[1];  // all five differ there
     if (phases.empty() || phases.back() != initial) phases += initial;
     const bool touches = frame.contacts[1].on;
-    if (frame.phase == MotionPhase::kTransit) EXPECT_FALSE(touches) << frame.t;
-    if (frame.phase == MotionPhase::kContact) EXPECT_TRUE(touches) << frame.t;
+    if (frame.phase == MotionPhase::kTransit || frame.phase == MotionPhase::kContact) {
+      EXPECT_EQ(touches, frame.phase == MotionPhase::kContact) << frame.t;
+    }
   }
   EXPECT_EQ(phases, "poroli");  // approach, contact, transit, contact, closing, lift
+}
+
+TEST_F(HandMotionTest, AFingerThatIsOnWithoutTouchingHasNoContactUnlessItIsBackAtOnce) {
+  const auto count_contacts = [&](int rows_without) {
+    std::vector<TraceRow> trace = trace_;
+    for (int i = 97; i < 97 + rows_without; ++i) trace[i].state.fingers[1].touching = false;
+    const MotionTask task =
+        BuildMotionTask(*world_, trace, {lift_, closing_t_, lift_t_}, MotionTiming());
+    return std::count_if(task.frames.begin(), task.frames.end(), [](const auto& frame) {
+      return frame.phase == MotionPhase::kContact && frame.contacts[1].on;
+    });
+  };
+  const auto all = count_contacts(0);
+  EXPECT_EQ(count_contacts(20), all);                // 0.083 s
+  EXPECT_NEAR(count_contacts(48), all - 6.0, 1.0);   // 0.2 s: frames at 30 a second
+  EXPECT_NEAR(count_contacts(96), all - 12.0, 1.0);  // to the end
+}
+
+TEST_F(HandMotionTest, AMotionIsHopelessOnceAKeyframeHasNoPose) {
+  MotionTask task = Make(MotionConfig()).task();
+  for (const int i : {task.keyframes[1], task.keyframes[2]}) {  // from below, through the table
+    task.frames[i].contacts[1].p_OC = Vector3(0.0, 0.0, -kSize.z() / 2);
+    task.frames[i].contacts[1].nhat_O = -Vector3::UnitZ();
+  }
+  const HandMotion motion(*solver_, task, grasp_, {}, 1);
+  MotionState state = motion.Start();
+  EXPECT_FALSE(state.is_hopeless());
+  int solved = 0;
+  while (!state.is_hopeless() && motion.SolveKeyframe(state)) ++solved;
+  EXPECT_TRUE(state.is_hopeless());
+  EXPECT_EQ(solved, 5);  // of seven, last to first
 }
 
 TEST_F(HandMotionTest, TheLiftIsTheSimulatedOneAtTheSpeedOfThePhysics) {
