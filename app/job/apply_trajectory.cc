@@ -158,6 +158,7 @@ CertifyFacts MakeCertifyFacts(const JobState& state, const Scene& scene, int pla
   for (const GraspContact& contact : release.pressing) {
     facts.pressing.push_back({contact.finger, contact.p_OC, contact.nhat_O});
   }
+  facts.out_of_reach_t = certificate.out_of_reach_t;
   facts.waits = certificate.full.waits;
   facts.stages = MakeStageFacts(*state.mppi, certificate.full.plan.stages);
   for (std::size_t i = 0; i < facts.stages.size(); ++i) {

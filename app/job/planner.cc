@@ -10,6 +10,7 @@
 #include "app/core/text.h"
 #include "app/grasp/grasp_room.h"
 #include "app/job/planner_settings.h"
+#include "app/motion/touches.h"
 
 namespace pregrasp {
 namespace {
@@ -166,8 +167,17 @@ Mppi Planner::MakeMppi(const ContactGraph& graph, const ContactPath& path,
 
 Certificate Planner::Certify(const Mppi& mppi, const MppiPlan& plan) const {
   const PlanOutcome outcome = mppi.Simulate(plan.action);
-  return CertifyPlan(*world_, *half_world_, *environment_, mppi.problem().start, outcome.plan,
-                     mppi.config().timing, config_.certify);
+  Certificate certificate = CertifyPlan(*world_, *half_world_, *environment_, mppi.problem().start,
+                                        outcome.plan, mppi.config().timing, config_.certify);
+  if (!certificate.certified) return certificate;
+  certificate.out_of_reach_t =
+      FindOutOfReach(grasp_world_->ik(), config_.motion.ik, *world_, certificate.trace,
+                     Rng(seed_, RngStream::kMotionKey, 1, mppi.problem().path.rank));
+  if (certificate.out_of_reach_t) {
+    certificate.certified = false;
+    certificate.reasons.push_back(CertifyReason::kOutOfReach);
+  }
+  return certificate;
 }
 
 ReleaseResult Planner::Release(const ContactGraph& graph, const Certificate& certificate) const {

@@ -114,7 +114,8 @@ class Planner {
   /// The optimisation of one path; `graph` outlives it.
   Mppi MakeMppi(const ContactGraph& graph, const ContactPath& path, const MppiConfig& config) const;
 
-  /// Re-simulates a plan of `state.plans` through Simbody, and again at half the step.
+  /// Re-simulates a plan of `state.plans` through Simbody, and again at half the step, and looks
+  /// whether the hand reaches its contacts (FindOutOfReach).
   Certificate Certify(const Mppi& mppi, const MppiPlan& plan) const;
 
   /// @param graph  whose mesh says where fingers may touch.

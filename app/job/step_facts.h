@@ -470,6 +470,7 @@ struct CertifyFacts {
                                       ///< step where that leaves more
   std::optional<RobustFacts> robust;  ///< of certified plans
   NeighbourFacts neighbours;          ///< at the end of the hold
+  std::optional<double> out_of_reach_t;  ///< [s]
   std::vector<PlaceFacts> pressing;
   std::vector<double> waits;  ///< before each stage, for the hand to get there [s]
   std::vector<StageFacts> stages;
@@ -497,6 +498,7 @@ struct CertifyFacts {
     visit("unresolved_mm", self.unresolved_mm);
     visit("robust", self.robust);
     visit("neighbours", self.neighbours);
+    visit("out_of_reach_t", self.out_of_reach_t);
     visit("pressing", self.pressing);
     visit("waits", self.waits);
     visit("stages", self.stages);

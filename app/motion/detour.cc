@@ -209,7 +209,8 @@ class DetourFinder {
       Tree &grown = trees[i % 2], &other = trees[1 - i % 2];
       // One sample in five is the other tree's root.
       const bool straight = rng_.Uniform() < 0.2;
-      const HandConfiguration sample = straight ? other.nodes.front() : Sample(from, to);
+      const double spread = i % 4 < 2 ? 1.0 : 2.0;  // each for both trees
+      const HandConfiguration sample = straight ? other.nodes.front() : Sample(from, to, spread);
       const int node = Extend(&grown, grown.FindNearest(sample), sample);
       if (node < 0) continue;
       const HandConfiguration goal = grown.nodes[node];
@@ -249,10 +250,11 @@ class DetourFinder {
     return -1;
   }
 
-  HandConfiguration Sample(const HandConfiguration& from, const HandConfiguration& to) {
+  HandConfiguration Sample(const HandConfiguration& from, const HandConfiguration& to,
+                           double spread) {
     const HandConfiguration base = Interpolate(from, to, rng_.Uniform());
     HandVector step = HandVector::Zero();
-    const double spread = kept_.empty() ? 1.0 : 0.3;
+    if (!kept_.empty()) spread *= 0.3;
     for (int i = 0; i < 3; ++i) {
       step[i] = spread * rng_.Uniform(-config_.spread, config_.spread);
       step[3 + i] = spread * rng_.Uniform(-config_.spread_angle, config_.spread_angle);

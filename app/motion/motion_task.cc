@@ -5,52 +5,15 @@
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
+#include "app/motion/touches.h"
 
 namespace pregrasp {
 namespace {
-
-using Contacts = std::array<Placement::Contact, kNumFingers>;
 
 constexpr double kStill = 1e-4;        // a body that moves less than this stands [m]
 constexpr double kStillDeg = 0.1;      // and turns less than this [degrees]
 constexpr double kSameContact = 2e-3;  // a finger keeps its contact if it is this near [m]
 constexpr int kMaxPosesOfWay = 9;      // from one frame to the next
-constexpr double kBriefly = 0.1;       // a contact that is lost this long is kept [s]
-
-Contacts ContactsOf(const WorldState& state) {
-  Contacts contacts{};
-  for (int j = 0; j < kNumFingers; ++j) {
-    const FingertipState& tip = state.fingers[j];
-    contacts[j] = {tip.on, tip.p_OC, tip.nhat_O};
-  }
-  return contacts;
-}
-
-// The contacts along a trajectory, by row: of the fingers that touch. One that is on without
-// touching has no place on the object, and the hand need not be there; unless it has been put on
-// or has touched just before, and touches again at once.
-std::vector<Contacts> FindTouches(const std::vector<TraceRow>& trace) {
-  std::vector<Contacts> touches(trace.size());
-  for (int j = 0; j < kNumFingers; ++j) {
-    std::size_t touched = 0;  // when it last did
-    for (std::size_t i = 1; i < trace.size(); ++i) {
-      const FingertipState& tip = trace[i].state.fingers[j];
-      if (!tip.on) continue;
-      if (!trace[i - 1].state.fingers[j].on) touched = i - 1;
-      if (!tip.touching) continue;
-      const bool briefly = trace[i].state.t - trace[touched].state.t <= kBriefly;
-      for (std::size_t k = briefly ? touched + 1 : i; k <= i; ++k) {
-        touches[k][j] = ContactsOf(trace[k].state)[j];
-      }
-      touched = i;
-    }
-  }
-  return touches;
-}
-
-bool AnyOn(const Contacts& contacts) {
-  return std::any_of(contacts.begin(), contacts.end(), [](const auto& c) { return c.on; });
-}
 
 bool SameFingers(const Contacts& a, const Contacts& b) {
   for (int j = 0; j < kNumFingers; ++j) {
@@ -234,7 +197,7 @@ MotionTask BuildMotionTask(const World& world, const std::vector<TraceRow>& trac
   PREGRASP_CHECK(timing.fps > 0.0, timing.fps);
   const Simulation plan{trace, FindTouches(trace)};
   Simulation lifting{lift.trace, {}};
-  for (const TraceRow& row : lift.trace) lifting.contacts.push_back(ContactsOf(row.state));
+  for (const TraceRow& row : lift.trace) lifting.contacts.push_back(ContactsOn(row.state));
   TaskBuilder task(world, timing.fps);
   // A finger is put on at the end of one step and is on in the row of the next.
   task.Add(MotionPhase::kApproach, trace.front().state, {});

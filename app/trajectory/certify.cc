@@ -63,6 +63,8 @@ const char* CertifyReasonText(CertifyReason reason) {
       return "the simulation did not find the contact forces exactly enough";
     case CertifyReason::kStepDependent:
       return "half the time step gives another verdict";
+    case CertifyReason::kOutOfReach:
+      return "no pose of the hand was found that has its fingertips at the contacts";
   }
   return "";
 }

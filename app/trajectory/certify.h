@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "app/dynamics/neighbours.h"
@@ -26,6 +27,7 @@ enum class CertifyReason {
   kNeverTouches,  ///< no finger ever touches the object
   kNotConverged,  ///< contact forces were not found to the accuracy that a verdict needs
   kStepDependent,  ///< half the time step gives another verdict
+  kOutOfReach,     ///< no pose of the hand was found for the contacts of some moment
 };
 const char* CertifyReasonText(CertifyReason reason);
 
@@ -34,13 +36,14 @@ struct Certificate {
   bool certified = false;
   std::vector<CertifyReason> reasons;  ///< empty if certified
   PlanOutcome full, half;
-  double hold_seconds = 0.0;    ///< how long the last targets were kept [s]
-  double hold_shift = 0.0;      ///< the object's way in that time [m], at the full step
-  double hold_turn_deg = 0.0;   ///< [degrees]
-  double step_shift = 0.0;      ///< distance between the two final positions [m]
-  double step_turn_deg = 0.0;   ///< and orientations [degrees]
-  NeighbourMotion neighbours;   ///< at the end of the hold, at the full step
-  std::vector<TraceRow> trace;  ///< every step at the full step, the start first
+  double hold_seconds = 0.0;             ///< how long the last targets were kept [s]
+  double hold_shift = 0.0;               ///< the object's way in that time [m], at the full step
+  double hold_turn_deg = 0.0;            ///< [degrees]
+  double step_shift = 0.0;               ///< distance between the two final positions [m]
+  double step_turn_deg = 0.0;            ///< and orientations [degrees]
+  NeighbourMotion neighbours;            ///< at the end of the hold, at the full step
+  std::optional<double> out_of_reach_t;  ///< when the hand was found to have no pose [s]
+  std::vector<TraceRow> trace;           ///< every step at the full step, the start first
 };
 
 /// How far the object is in `b` from where it is in `a` [m], and how far turned [degrees].
@@ -52,6 +55,7 @@ bool StaysInHold(const PlanOutcome& outcome, const CertifyConfig& config);
 
 /// Certifies the world plan `plan` (honesty rules 4 and 5).
 /// @param half_world  the same scene at half the step.
+/// Whether the hand reaches its contacts is not among the questions here (Planner::Certify).
 Certificate CertifyPlan(const World& world, const World& half_world,
                         const EnvironmentDistance& environment, const WorldState& start,
                         const WorldPlan& plan, PlanTiming timing, const CertifyConfig& config);

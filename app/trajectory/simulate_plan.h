@@ -11,7 +11,7 @@ namespace pregrasp {
 /// What a simulated plan did: everything that its cost and its verdict are made from.
 struct PlanOutcome {
   WorldPlan plan;                        ///< with the targets that were used
-  std::vector<double> waits;  ///< before each stage, until its fingers can be there [s]
+  std::vector<double> waits;             ///< before each stage, until its fingers can be there [s]
   std::vector<WorldState> stage_starts;  ///< the state when each stage begins, its fingers put on
   /// After the hold; where the state is not finite any more, the last stage's start.
   WorldState end;
