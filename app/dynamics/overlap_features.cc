@@ -17,7 +17,7 @@ constexpr double kWeld = 1e-6;
 constexpr double kMinCosine = 0.05;
 // Discs tilted by less than this [rad] are circles seen along the normal but for 0.1 % of their
 // size.
-constexpr double kAlmostFlat = 0.05;
+constexpr double kLeastSlope = 0.05;
 // Lines within this angle [rad] lie along each other.
 constexpr double kParallel = 2e-3;
 
@@ -246,7 +246,7 @@ class Overlap {
   // Discs that lie on each other are circles seen along the normal but for the square of their
   // tilt.
   void AddDiscCrossings() {
-    if (a_.gradient.norm() > kAlmostFlat || b_.gradient.norm() > kAlmostFlat) return;
+    if (a_.gradient.norm() > kLeastSlope || b_.gradient.norm() > kLeastSlope) return;
     const Vector2 c_a = a_.points[0].head<2>(), d = b_.points[0].head<2>() - c_a;
     const double r_a = std::max(a_.u.norm(), a_.w.norm());
     const double r_b = std::max(b_.u.norm(), b_.w.norm());

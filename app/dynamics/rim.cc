@@ -10,14 +10,14 @@ namespace {
 constexpr double kFlat = 3e-5;
 // Tilted by less than this [rad] its lowest point is one of kSectors, which is too high by 1.2e-6
 // of the radius at most: a direction computed from so small a tilt would magnify rounding errors.
-constexpr double kAlmostFlat = 1e-3;
+constexpr double kAlmostLevel = 1e-3;
 constexpr int kSectors = 64;
 // A point of the rim that sinks deeper than this [m] below the one that is lowest now, while the
 // disc rolls from the one to the other, is a point of its own.
 constexpr double kRolls = 1e-5;
 
 Vector2 CalcDirection(const Vector2& down, double tilt) {
-  if (tilt > kAlmostFlat) return down / tilt;
+  if (tilt > kAlmostLevel) return down / tilt;
   constexpr double kSector = 2.0 * kPi / kSectors;
   const double angle = kSector * std::round(std::atan2(down.y(), down.x()) / kSector);
   return {std::cos(angle), std::sin(angle)};

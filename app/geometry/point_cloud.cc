@@ -19,7 +19,7 @@ constexpr int kMinCandidates = 4096;
 constexpr int kMaxRounds = 64;
 
 // A shape without unions in it, placed in the whole shape's frame.
-struct Leaf {
+struct CloudLeaf {
   SignedDistance distance;
   TriangleMesh mesh;  // in its own frame P
   RigidTransform X_BP;
@@ -50,7 +50,7 @@ class Candidates {
       const double at = (i + rng.Uniform()) / count * sums_.back();
       const auto it = std::lower_bound(sums_.begin(), sums_.end() - 1, at);
       const auto [l, f] = faces_[it - sums_.begin()];
-      const Leaf& leaf = leaves_[l];
+      const CloudLeaf& leaf = leaves_[l];
       const TriangleMesh& mesh = leaf.mesh;
       const double s = std::sqrt(rng.Uniform()), t = rng.Uniform();
       const Vector3 q_P = (1.0 - s) * mesh.V.row(mesh.F(f, 0)) +
@@ -72,7 +72,7 @@ class Candidates {
 
  private:
   SignedDistance distance_;
-  std::vector<Leaf> leaves_;
+  std::vector<CloudLeaf> leaves_;
   std::vector<double> sums_;                // running areas
   std::vector<std::pair<int, int>> faces_;  // (leaf, face)
 };

@@ -32,7 +32,7 @@ constexpr bool kLimitMemory = true;
 #endif
 
 // What the child sends first.
-struct Header {
+struct AnswerHeader {
   char kind = 0;  // 'm': a mesh of first x 3 doubles and second x 3 ints; 'e': two texts
   std::int64_t first = 0, second = 0;
 };
@@ -64,7 +64,7 @@ bool Send(int descriptor, const void* data, std::size_t size) {
 }
 
 bool SendMesh(int descriptor, const TriangleMesh& mesh) {
-  const Header header{'m', mesh.V.rows(), mesh.F.rows()};
+  const AnswerHeader header{'m', mesh.V.rows(), mesh.F.rows()};
   return Send(descriptor, &header, sizeof header) &&
          Send(descriptor, mesh.V.data(),
               sizeof(double) * static_cast<std::size_t>(mesh.V.size())) &&
@@ -72,8 +72,8 @@ bool SendMesh(int descriptor, const TriangleMesh& mesh) {
 }
 
 bool SendProblem(int descriptor, const std::string& expected, const std::string& got) {
-  const Header header{'e', static_cast<std::int64_t>(expected.size()),
-                      static_cast<std::int64_t>(got.size())};
+  const AnswerHeader header{'e', static_cast<std::int64_t>(expected.size()),
+                            static_cast<std::int64_t>(got.size())};
   return Send(descriptor, &header, sizeof header) &&
          Send(descriptor, expected.data(), expected.size()) &&
          Send(descriptor, got.data(), got.size());
@@ -182,7 +182,7 @@ std::string ReceiveText(Child& child, std::int64_t size) {
 
 TriangleMesh ReadInChild(const std::function<TriangleMesh()>& read, const ReadLimits& limits) {
   Child child(read, limits);
-  Header header;
+  AnswerHeader header;
   if (!child.Receive(&header, sizeof header)) ThrowForEnd(child.Await(), limits);
   if (header.kind == 'e') {
     const std::string expected = ReceiveText(child, header.first);

@@ -34,7 +34,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
   Encoding encoding = Encoding::kAscii;
   std::vector<Element> elements;
 };
@@ -96,10 +96,10 @@ Element ParseElement(std::string_view line) {
 }
 
 // Leaves `rest` at the first byte after the header.
-Header ParseHeader(std::string_view& rest) {
+PlyHeader ParseHeader(std::string_view& rest) {
   if (rest.substr(0, 3) != "ply") Fail("does not begin with \"ply\"");
   NextLine(rest);
-  Header header;
+  PlyHeader header;
   bool has_format = false;
   for (;;) {
     std::string_view line = NextLine(rest);
@@ -256,7 +256,7 @@ void ReadFaces(Body& body, const Element& element, PlyContent& content) {
 }  // namespace
 
 PlyContent ParsePly(std::string_view bytes) {
-  const Header header = ParseHeader(bytes);
+  const PlyHeader header = ParseHeader(bytes);
   for (const char* name : {"vertex", "face"}) {
     const auto count = std::count_if(header.elements.begin(), header.elements.end(),
                                      [&](const Element& element) { return element.name == name; });

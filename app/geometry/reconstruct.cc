@@ -27,7 +27,7 @@ const char* const kClosed = "points all over a closed surface";
 
 constexpr int kMinPoints = 100;
 constexpr int kMaxPoints = 15'000;
-constexpr int kMaxTriangles = 8'000;
+constexpr int kTrianglesKept = 8'000;
 constexpr int kMaxHandles = 10;           // more are a thin wall that broke
 constexpr int kMaxCells = 16'000;         // that the surface crosses, about
 constexpr double kCellPerSpacing = 0.75;  // of the grid that the surface is taken from
@@ -257,7 +257,7 @@ Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normal
   result.euler_number = mesh.F.rows() == 0 ? 0 : CalcEulerNumber(mesh);
   RequireSolid(mesh, result.euler_number, cloud.spacing);
   hull.PullIn(mesh);
-  result.mesh = SimplifyMesh(mesh, {}, kMaxTriangles);
+  result.mesh = SimplifyMesh(mesh, {}, kTrianglesKept);
 
   const MeshDistance to_mesh(result.mesh);
   std::vector<double> errors;

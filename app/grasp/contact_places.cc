@@ -10,7 +10,7 @@ namespace pregrasp {
 namespace {
 
 constexpr double kCell = 0.02;  // [m]
-constexpr int kTries = 8;       // draws before a neighbourhood is given up
+constexpr int kPlaceTries = 8;  // draws before a neighbourhood is given up
 
 // A direction's octant, face or edge of a cube: 26 buckets.
 int BucketOf(const Vector3& nhat) {
@@ -180,7 +180,7 @@ int ContactPlaces::DrawNear(Finger finger, const Vector3& centre, double distanc
     }
   }
   if (count == 0) return kNone;
-  for (int attempt = 0; attempt < kTries; ++attempt) {
+  for (int attempt = 0; attempt < kPlaceTries; ++attempt) {
     int number = static_cast<int>(rng.UniformInt(count));
     for (int i = range.low[0]; i <= range.high[0] && number >= 0; ++i) {
       for (int j = range.low[1]; j <= range.high[1] && number >= 0; ++j) {

@@ -9,7 +9,7 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kTries = 8;                 // draws of one contact before the set is given up
+constexpr int kContactTries = 8;          // draws of one contact before the set is given up
 constexpr double kBesideOpposite = 0.02;  // [m], between tip centres
 
 bool IsThumb(Finger finger) { return finger == Finger::kThumb; }
@@ -101,7 +101,7 @@ std::optional<GraspContact> ContactSampler::DrawContact(Finger finger,
   for (const GraspContact& other : placed) {
     (IsThumb(other.finger) != IsThumb(finger) ? across : beside).push_back(&other);
   }
-  for (int attempt = 0; attempt < kTries; ++attempt) {
+  for (int attempt = 0; attempt < kContactTries; ++attempt) {
     std::optional<GraspContact> contact;
     if (draw.opposed && !across.empty() && beside.empty()) {
       contact = DrawOpposite(*across[rng.UniformInt(across.size())], finger, rng);
@@ -139,7 +139,7 @@ std::optional<std::vector<GraspContact>> ContactSampler::Sample(
   for (const Finger finger : fingers) {
     if (FindContact(fixed, finger) != nullptr) continue;
     std::optional<GraspContact> contact = DrawContact(finger, contacts, draw, rng);
-    for (int attempt = 1; attempt < kTries && contact && contact->on_edge && faces_only;
+    for (int attempt = 1; attempt < kContactTries && contact && contact->on_edge && faces_only;
          ++attempt) {
       contact = DrawContact(finger, contacts, draw, rng);
     }

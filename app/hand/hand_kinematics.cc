@@ -95,4 +95,8 @@ HandVector CalcStep(const HandConfiguration& start, const HandConfiguration& end
   return step;
 }
 
+HandConfiguration Interpolate(const HandConfiguration& a, const HandConfiguration& b, double s) {
+  return Advance(a, HandVector(s * CalcStep(a, b)));
+}
+
 }  // namespace pregrasp

@@ -47,4 +47,7 @@ HandConfiguration Advance(const HandConfiguration& start, const HandVector& step
 /// The step that leads from `start` to `end` (the inverse of Advance).
 HandVector CalcStep(const HandConfiguration& start, const HandConfiguration& end);
 
+/// Where the step from `a` to `b` has led by its share `s`.
+HandConfiguration Interpolate(const HandConfiguration& a, const HandConfiguration& b, double s);
+
 }  // namespace pregrasp

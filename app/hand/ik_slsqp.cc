@@ -14,7 +14,7 @@ namespace {
 // Constraints in units that make one of them a centimetre, so that all have the size of the scaled
 // variables.
 constexpr double kLengthUnit = 0.01;  // [m]
-constexpr double kConeMargin = 1e-3;  // of the cosine
+constexpr double kConeSlack = 1e-3;   // of the cosine
 // Of the buffer that least squares asks for: an exact solution may not leave room for more.
 constexpr double kClearanceShare = 0.1;
 // One inequality per capsule (its least distance to anything), one for touches, one per cone:
@@ -113,7 +113,7 @@ class Program {
     for (int i = 0; i < terms_.num_contacts; ++i) {
       const IkTerms::Contact& contact = terms_.contacts[i];
       const int at = num_capsules + 1 + i;
-      values[at] = terms_.least_cosine + kConeMargin - point_->cosines[i];
+      values[at] = terms_.least_cosine + kConeSlack - point_->cosines[i];
       if (gradients == nullptr) continue;
       HandVector row = HandVector::Zero();
       AddDirectionGradient(terms_.hand, point_->pose, contact.link,

@@ -63,8 +63,8 @@ std::vector<Vector3> Ring(const Section& section, double inset) {
 }
 
 // Between b and c of four sections (Catmull and Rom 1974).
-Section Interpolate(const Section& a, const Section& b, const Section& c, const Section& d,
-                    double t) {
+Section InterpolateSection(const Section& a, const Section& b, const Section& c, const Section& d,
+                           double t) {
   const auto spline = [&](double Section::*field) {
     const double va = a.*field;
     const double vb = b.*field;
@@ -134,8 +134,8 @@ TriangleMesh Loft(const std::vector<Section>& sections, double low, double high)
     if (i == 0) from.z += low;
     if (i + 2 == count) to.z -= high;
     for (int k = 0; k < kBetween; ++k) {
-      rings.push_back(
-          Ring(Interpolate(before, from, to, after, static_cast<double>(k) / kBetween), 0.0));
+      rings.push_back(Ring(
+          InterpolateSection(before, from, to, after, static_cast<double>(k) / kBetween), 0.0));
     }
   }
   for (int i = kFillet; i >= 0; --i) end_ring(sections.back(), high, i, -1.0);

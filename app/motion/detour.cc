@@ -17,11 +17,6 @@ using Points = std::vector<HandConfiguration>;
 // With contacts kept, the hand is put on them anew this often, in units of a step.
 constexpr double kContactSpacing = 0.4;
 constexpr double kPointSpacing = 0.5;  // of the points between which a way is shortened
-constexpr double kSameContact = 2e-3;  // [m]
-
-HandConfiguration Interpolate(const HandConfiguration& a, const HandConfiguration& b, double s) {
-  return Advance(a, HandVector(s * CalcStep(a, b)));
-}
 
 // In units of 5 cm and half a radian.
 double CalcLength(const HandConfiguration& a, const HandConfiguration& b) {

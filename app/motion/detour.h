@@ -8,6 +8,9 @@
 
 namespace pregrasp {
 
+/// A finger has the same contact at two moments if its places are this near on the object [m].
+inline constexpr double kSameContact = 2e-3;
+
 /// How hard a way without collision is looked for.
 struct DetourConfig {
   double retreat = 0.03;  ///< fingertips leave and reach contacts along their normals, by this [m]

@@ -20,10 +20,6 @@ constexpr std::array kRungs = {LooseningRung::kNone,     LooseningRung::kTip5mm,
                                LooseningRung::kCone80,   LooseningRung::kConeOff,
                                LooseningRung::kDepth3mm, LooseningRung::kClearance1mm};
 
-HandConfiguration Interpolate(const HandConfiguration& a, const HandConfiguration& b, double s) {
-  return Advance(a, HandVector(s * CalcStep(a, b)));
-}
-
 // The hand carried along rigidly with the object from one pose to another.
 HandConfiguration Carry(const HandConfiguration& hand, const RigidTransform& X_WO_from,
                         const RigidTransform& X_WO_to) {

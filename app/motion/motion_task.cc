@@ -5,15 +5,15 @@
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
+#include "app/motion/detour.h"
 #include "app/motion/touches.h"
 
 namespace pregrasp {
 namespace {
 
-constexpr double kStill = 1e-4;        // a body that moves less than this stands [m]
-constexpr double kStillDeg = 0.1;      // and turns less than this [degrees]
-constexpr double kSameContact = 2e-3;  // a finger keeps its contact if it is this near [m]
-constexpr int kMaxPosesOfWay = 9;      // from one frame to the next
+constexpr double kStill = 1e-4;    // a body that moves less than this stands [m]
+constexpr double kStillDeg = 0.1;  // and turns less than this [degrees]
+constexpr int kMaxPosesOfWay = 9;  // from one frame to the next
 
 bool SameFingers(const Contacts& a, const Contacts& b) {
   for (int j = 0; j < kNumFingers; ++j) {

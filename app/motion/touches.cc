@@ -12,7 +12,7 @@ constexpr double kBriefly = 0.1;  // a contact that is lost this long is kept [s
 constexpr double kEvery = 0.25;   // reach is looked at this often [s]
 constexpr int kStarts = 50;       // of inverse kinematics, on each rung
 
-bool SameFingers(const Contacts& a, const Contacts& b) {
+bool SameFingersOn(const Contacts& a, const Contacts& b) {
   return std::equal(a.begin(), a.end(), b.begin(),
                     [](const auto& x, const auto& y) { return x.on == y.on; });
 }
@@ -25,8 +25,8 @@ std::vector<std::size_t> FindMoments(const std::vector<TraceRow>& trace,
   for (std::size_t i = 0; i < trace.size(); ++i) {
     if (!AnyOn(touches[i])) continue;
     const double t = trace[i].state.t;
-    const bool begins = i == 0 || !SameFingers(touches[i - 1], touches[i]);
-    const bool ends = i + 1 == trace.size() || !SameFingers(touches[i + 1], touches[i]);
+    const bool begins = i == 0 || !SameFingersOn(touches[i - 1], touches[i]);
+    const bool ends = i + 1 == trace.size() || !SameFingersOn(touches[i + 1], touches[i]);
     if (!begins && !ends && t - last < kEvery) continue;
     moments.push_back(i);
     last = t;

@@ -16,10 +16,6 @@ namespace {
 
 constexpr std::size_t kBufferSize = 1 << 16;
 
-[[noreturn]] void ThrowErrno(const std::filesystem::path& file, const char* expected) {
-  throw InputError(file.string(), "", expected, std::generic_category().message(errno));
-}
-
 // An open file or folder; closed at the end.
 class Descriptor {
  public:
@@ -38,6 +34,10 @@ class Descriptor {
 };
 
 }  // namespace
+
+void ThrowErrno(const std::filesystem::path& path, const char* expected) {
+  throw InputError(path.string(), "", expected, std::generic_category().message(errno));
+}
 
 CheckedFile::CheckedFile(std::filesystem::path file) : file_(std::move(file)) {
   descriptor_ = open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);

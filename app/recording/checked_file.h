@@ -7,6 +7,11 @@
 
 namespace pregrasp {
 
+/// Throws what the system's last error on a file or folder means to the user.
+/// @param expected  what was expected of it.
+/// @throws InputError always.
+[[noreturn]] void ThrowErrno(const std::filesystem::path& path, const char* expected);
+
 /// A file being written, with every call to the system checked. @throws InputError from each
 /// function, with the system's reason ("No space left on device").
 class CheckedFile {

@@ -22,10 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr char kWritable[] = "a folder that can be written";
 
-[[noreturn]] void ThrowErrno(const fs::path& path, const char* expected) {
-  throw InputError(path.string(), "", expected, std::generic_category().message(errno));
-}
-
 fs::path WithSuffix(fs::path path, const char* suffix) {
   path += suffix;
   return path;
