@@ -13,6 +13,8 @@ namespace {
 constexpr double kRestSpeed = 0.1;   // [m/s] counts as one unit of unrest
 constexpr double kRestTurn = 1.0;    // [rad/s] counts as one unit of unrest
 constexpr double kFastSpeed = 0.35;  // [m/s]
+constexpr double kTipSpeed = 0.8;    // [m/s] of a fingertip, nearly what the wrist may do
+constexpr double kTipHaste = 8.0;    // [m/s^2] a way of a frame bends by a millimetre
 constexpr double kFallDepth = 0.15;  // [m] below its start: over the edge and gone
 
 ScoredState MakeScoredState(const World& world, const WorldState& state) {
@@ -37,6 +39,7 @@ std::span<const CostTerm> CostTerms() {
       {"tip_overlap", &PlanCost::tip_overlap, &CostWeights::tip_overlap, false},
       {"tip_spacing", &PlanCost::tip_spacing, &CostWeights::tip_spacing, false},
       {"hold", &PlanCost::hold, &CostWeights::hold, false},
+      {"haste", &PlanCost::haste, &CostWeights::haste, false},
       {"fall", &PlanCost::fall, &CostWeights::fall, false},
   };
   return kTerms;
@@ -119,6 +122,9 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
   const double moved =
       std::max(shift / allowed.max_hold_shift, turn_deg / allowed.max_hold_turn_deg);
   cost.hold = weights.hold * std::clamp(moved - 0.5, 0.0, 2.0);
+  const double haste =
+      std::max(outcome.max_tip_speed / kTipSpeed, outcome.max_tip_acceleration / kTipHaste);
+  cost.haste = weights.haste * std::clamp(haste - 1.0, 0.0, 1.0);
   const BodyState& start = outcome.stage_starts.front().bodies.front();
   const Vector3 up = -world.scene().gravity.normalized();
   const bool fallen = outcome.diverged || up.dot(end.p_WB - start.p_WB) < -kFallDepth;

@@ -27,6 +27,9 @@ struct CostWeights {
   double tip_spacing = 1.0;  ///< the same of the two tips' spheres with each other
   double hold = 1.0;         ///< the object's way in the hold over what a certificate allows, from
                              ///< half of that on, at most 2
+  double haste = 0.5;        ///< a tip that touches moves faster than 0.8 m/s or speeds up by more
+                             ///< than 8 m/s^2: the larger ratio's excess over 1, at most 1. Hardly
+                             ///< a hand follows (HandLimits); where nothing else helps, it may try
   double fall = 1.5;         ///< the object fell out of the scene, or the simulation diverged
 };
 
@@ -37,7 +40,7 @@ struct PlanCost {
   double room = 0.0;                 ///< GraspRoom there; 0 where none is asked
   double reward = 0.0;               ///< CalcReward of these
   double no_contact = 0.0, slip = 0.0, effort = 0.0, unrest = 0.0, speed = 0.0;
-  double tip_overlap = 0.0, tip_spacing = 0.0, hold = 0.0, fall = 0.0;
+  double tip_overlap = 0.0, tip_spacing = 0.0, hold = 0.0, haste = 0.0, fall = 0.0;
   double total = 0.0;
 
   /// What compares plans of different paths: without the tie-breakers, whose scale is a path's own.

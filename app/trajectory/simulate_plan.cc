@@ -46,6 +46,7 @@ class PlanRunner {
     PREGRASP_CHECK(timing.knots >= 1, timing.knots);
     steps_per_knot_ = StepsIn(timing.stage_seconds / timing.knots);
     steps_in_hold_ = StepsIn(timing.hold_seconds);
+    steps_in_window_ = std::max(1, StepsIn(kTipWindow));
   }
 
   const WorldState& state() const { return state_; }
@@ -111,7 +112,8 @@ class PlanRunner {
     outcome_.seconds = state_.t - start_.t;
     PREGRASP_CHECK(IsFiniteState(outcome_.end) && IsFiniteState(outcome_.hold_start));
     PREGRASP_CHECK(AreFinite(outcome_.seconds, outcome_.contact_seconds, outcome_.effort,
-                             outcome_.max_force, outcome_.max_speed, outcome_.max_penetration,
+                             outcome_.max_force, outcome_.max_speed, outcome_.max_tip_speed,
+                             outcome_.max_tip_acceleration, outcome_.max_penetration,
                              outcome_.max_tip_overlap, outcome_.min_tip_gap));
     return std::move(outcome_);
   }
@@ -188,10 +190,29 @@ class PlanRunner {
       outcome_.effort += force * dt;
       outcome_.max_force = std::max(outcome_.max_force, force);
     }
+    if (state_.step % steps_in_window_ == 0) FollowTips();
     const int tip_check_every = stepper_ == Stepper::kSimbody ? 1 : kTipCheckEvery;
     if (state_.step % tip_check_every == 0) CheckTips(tip_check_every * dt);
     const Vector3 travelled = object.p_WB - start_.bodies.front().p_WB;
     if (!(travelled.norm() <= kWorldRadius)) outcome_.diverged = true;
+  }
+
+  // By how much the tips that touch have moved in the last windows.
+  void FollowTips() {
+    const double seconds = steps_in_window_ * world_.config().dt;
+    for (int j = 0; j < kNumPlanningFingers; ++j) {
+      const FingertipState& tip = state_.fingers[j];
+      std::array<std::optional<Vector3>, 3>& p = p_WTips_[j];
+      p = {p[1], p[2], std::nullopt};
+      if (!tip.on || !tip.touching) continue;
+      p[2] = tip.p_WF;
+      if (!p[1]) continue;
+      const Vector3 v = (*p[2] - *p[1]) / seconds;
+      outcome_.max_tip_speed = std::max(outcome_.max_tip_speed, v.norm());
+      if (!p[0]) continue;
+      const Vector3 a = (v - (*p[1] - *p[0]) / seconds) / seconds;
+      outcome_.max_tip_acceleration = std::max(outcome_.max_tip_acceleration, a.norm());
+    }
   }
 
   void CheckTips(double seconds) {
@@ -226,7 +247,9 @@ class PlanRunner {
   std::array<std::optional<Vector3>, kNumPlanningFingers> p_WLast_;  // contacts, when last on
   std::vector<ContactPoint> contacts_;
   PlanOutcome outcome_;
-  int steps_per_knot_ = 0, steps_in_hold_ = 0;
+  int steps_per_knot_ = 0, steps_in_hold_ = 0, steps_in_window_ = 1;
+  /// Where each tip touched at the last ends of windows; nothing where it did not.
+  std::array<std::array<std::optional<Vector3>, 3>, kNumPlanningFingers> p_WTips_;
 };
 
 }  // namespace

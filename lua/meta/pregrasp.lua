@@ -443,6 +443,7 @@ function Path:optimize(options) end
 ---@field tip_overlap? number weight: a fingertip in the surroundings, by the share of a fingertip's radius, 0 to 1000; 1
 ---@field tip_spacing? number weight: the two tips overlap, by the share of a fingertip's radius, 0 to 1000; 1
 ---@field hold? number weight: the object's way in the hold over what a certificate allows, from half of it on, 0 to 1000; 1
+---@field haste? number weight: a tip that touches is over 0.8 m/s or 8 m/s^2, by the excess, at most 1, 0 to 1000; 0.5
 ---@field fall? number weight: the object fell out of the scene, 0 to 1000; 1.5
 
 ---A picture of the path on the contact mesh.

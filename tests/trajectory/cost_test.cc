@@ -80,6 +80,18 @@ TEST_F(PlanCostTest, MovingInTheHoldCostsFromHalfOfWhatACertificateAllowsOn) {
   EXPECT_NEAR(cost_at(1.0), 2.0 * CostWeights().hold, 1e-12);
 }
 
+TEST_F(PlanCostTest, ATipThatIsTooFastOrTooAbruptForAHandCostsByTheWorseOfBoth) {
+  const auto cost_at = [&](double speed, double acceleration) {
+    outcome_.max_tip_speed = speed;
+    outcome_.max_tip_acceleration = acceleration;
+    return Calc().haste;
+  };
+  EXPECT_EQ(cost_at(0.79, 7.9), 0.0);
+  EXPECT_NEAR(cost_at(1.2, 7.9), 0.5 * CostWeights().haste, 1e-12);
+  EXPECT_NEAR(cost_at(1.2, 14.0), 0.75 * CostWeights().haste, 1e-12);
+  EXPECT_NEAR(cost_at(0.1, 90.0), CostWeights().haste, 1e-12);
+}
+
 TEST_F(PlanCostTest, OverlapOfATipCostsByItsDepthWithoutAJump) {
   const auto cost_at = [&](double overlap) {
     outcome_.max_tip_overlap = overlap;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -101,6 +102,22 @@ TEST_F(SimulatePlanTest, NothingIsWaitedForWhereFingersOnlyStayOrLeave) {
   const PlanOutcome outcome = Simulate(plan);
   EXPECT_EQ(outcome.waits, (std::vector<double>{0.0, 0.0}));
   EXPECT_NEAR(outcome.seconds, 2 * 0.8 + 1.5, 0.01);
+}
+
+TEST_F(SimulatePlanTest, ATipThatTouchesIsAsFastAsItsContactAndOneInTheAirDoesNotCount) {
+  // The ruler is dragged firmly by 8 cm in 0.8 s: it sticks to the finger, whose target goes at
+  // 0.1 m/s from the first step on.
+  const PlanOutcome drag = Simulate(MakeRulerDrag(0.02, 0.08));
+  double fastest = 0.0;
+  for (const TraceRow& row : trace_) {
+    fastest = std::max(fastest, row.state.bodies[0].v_WB.norm());
+  }
+  EXPECT_NEAR(drag.max_tip_speed, fastest, 0.2 * fastest);
+  EXPECT_GT(drag.max_tip_acceleration, 0.1 / 0.1);
+  EXPECT_LT(drag.max_tip_acceleration, 8.0);
+  WorldPlan flight = MakeRulerDrag(-0.05, 2.0);  // 5 cm above it, at 2.5 m/s
+  const PlanOutcome air = Simulate(flight);
+  EXPECT_LT(air.max_tip_speed, 0.1);
 }
 
 }  // namespace
