@@ -465,11 +465,11 @@ struct CertifyFacts {
   bool stays_when_released = false;
   double seconds = 0.0;
   double max_speed = 0.0, max_force_N = 0.0, max_penetration_mm = 0.0, max_tip_overlap_mm = 0.0;
-  int not_converged = 0;              ///< physics steps that the contact solver left unfinished
-  double unresolved_mm = 0.0;         ///< the overlap that such steps leave, summed; at half the
-                                      ///< step where that leaves more
-  std::optional<RobustFacts> robust;  ///< of certified plans
-  NeighbourFacts neighbours;          ///< at the end of the hold
+  int not_converged = 0;                 ///< physics steps that the contact solver left unfinished
+  double unresolved_mm = 0.0;            ///< the overlap that such steps leave, summed; at half the
+                                         ///< step where that leaves more
+  std::optional<RobustFacts> robust;     ///< of certified plans
+  NeighbourFacts neighbours;             ///< at the end of the hold
   std::optional<double> out_of_reach_t;  ///< [s]
   std::vector<PlaceFacts> pressing;
   std::vector<double> waits;  ///< before each stage, for the hand to get there [s]

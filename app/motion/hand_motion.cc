@@ -12,6 +12,7 @@
 #include "app/core/finite.h"
 #include "app/core/interrupt.h"
 #include "app/motion/motion_finisher.h"
+#include "app/motion/touches.h"
 
 namespace pregrasp {
 namespace {
@@ -205,16 +206,16 @@ std::vector<int> HandMotion::KeyframeSequence() const {
   std::iota(sequence.begin(), sequence.end(), 0);
   if (config_.order == KeyframeOrder::kReverse) {
     std::reverse(sequence.begin(), sequence.end());
-    // One without contacts goes where the contacts before it have left the hand: after these.
+    // One without contacts goes where the contacts before it have left the hand, if there are any:
+    // after these. The start of the approach comes last.
     const auto touches = [this](int key) {
-      const auto& contacts = task_->frames[task_->keyframes[key]].contacts;
-      return key == 0 || std::any_of(contacts.begin(), contacts.end(),
-                                     [](const auto& contact) { return contact.on; });
+      return AnyOn(task_->frames[task_->keyframes[key]].contacts);
     };
-    for (std::size_t i = sequence.size(); i-- > 0;) {
+    for (std::size_t i = sequence.size() - 1; i-- > 0;) {
       if (touches(sequence[i])) continue;
       std::size_t last = i + 1;
-      while (!touches(sequence[last])) ++last;
+      while (last < sequence.size() && !touches(sequence[last])) ++last;
+      if (last == sequence.size()) continue;
       std::reverse(sequence.begin() + i, sequence.begin() + last);
       std::rotate(sequence.begin() + i, sequence.begin() + last, sequence.begin() + last + 1);
     }

@@ -7,6 +7,7 @@
 
 #include "app/geometry/mass_properties.h"
 #include "app/hand/certificate.h"
+#include "app/motion/touches.h"
 #include "tests/motion/motion_audit.h"
 
 namespace pregrasp {
@@ -308,6 +309,19 @@ TEST_F(HandMotionTest, KeyframesAreSolvedLastToFirstByDefault) {
   while (motion.SolveKeyframe(state)) {
   }
   EXPECT_EQ(state.solved_keys, (std::vector<int>{6, 5, 4, 3, 2, 1, 0}));
+}
+
+TEST_F(HandMotionTest, TheApproachIsSolvedLastAlsoWhereTheFirstFrameTouchesNothing) {
+  std::vector<TraceRow> trace = trace_;
+  for (int i = 0; i < 48; ++i) trace[i].state.fingers[1].touching = false;
+  const MotionTask task =
+      BuildMotionTask(*world_, trace, {lift_, closing_t_, lift_t_}, MotionTiming());
+  const HandMotion motion(*solver_, task, grasp_, {}, 1);
+  MotionState state = motion.Start();
+  while (motion.SolveKeyframe(state)) {
+  }
+  EXPECT_FALSE(AnyOn(task.frames[task.keyframes[1]].contacts));
+  EXPECT_EQ(state.solved_keys.back(), 0);
 }
 
 TEST_F(HandMotionTest, ThePalmStartsTwentyCentimetresOff) {
