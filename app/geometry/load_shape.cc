@@ -69,6 +69,12 @@ void RequireClosed(const TriangleMesh& mesh, const std::string& name, const std:
                      fmt::format("{}, which has {}", name,
                                  Count(defects.open_edges, "open edge", "open edges")));
   }
+  if (defects.crowded_edges > 0 && defects.repeated_faces > 0) {
+    throw InputError(
+        where, field, "a mesh with each face once",
+        fmt::format("{}, which has {}, turned round or not", name,
+                    Count(defects.repeated_faces, "face given twice", "faces given twice")));
+  }
   if (defects.crowded_edges > 0) {
     throw InputError(where, field, "a mesh with two triangles at each edge",
                      fmt::format("{}, which has more at {}", name,

@@ -78,6 +78,18 @@ std::vector<int> FindRepresentatives(const MatrixX3& V, double tolerance) {
   return representative;
 }
 
+// Faces with the corners of an earlier one, in any order.
+int CountRepeatedFaces(const TriangleMesh& mesh) {
+  std::vector<std::array<int, 3>> faces(static_cast<std::size_t>(mesh.F.rows()));
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto row = static_cast<Eigen::Index>(f);
+    faces[f] = {mesh.F(row, 0), mesh.F(row, 1), mesh.F(row, 2)};
+    std::sort(faces[f].begin(), faces[f].end());
+  }
+  std::sort(faces.begin(), faces.end());
+  return static_cast<int>(faces.end() - std::unique(faces.begin(), faces.end()));
+}
+
 }  // namespace
 
 std::vector<std::array<int, 3>> FindNeighbours(const TriangleMesh& mesh) {
@@ -126,6 +138,7 @@ std::vector<Vector3> CalcFaceNormals(const TriangleMesh& mesh,
 
 MeshDefects FindDefects(const TriangleMesh& mesh) {
   MeshDefects defects;
+  defects.repeated_faces = CountRepeatedFaces(mesh);
   const std::vector<EdgeSide> sides = ListEdgeSides(mesh);
   ForEachEdge(sides, [&](std::size_t begin, std::size_t end) {
     if (end - begin == 1) ++defects.open_edges;

@@ -19,9 +19,10 @@ std::vector<Vector3> CalcFaceNormals(const TriangleMesh& mesh,
 
 /// What keeps a mesh from being a closed two-manifold.
 struct MeshDefects {
-  int open_edges = 0;     ///< edges with one triangle
-  int crowded_edges = 0;  ///< edges with more than two triangles
-  int turned_edges = 0;   ///< edges whose two triangles run along them the same way
+  int open_edges = 0;      ///< edges with one triangle
+  int crowded_edges = 0;   ///< edges with more than two triangles
+  int repeated_faces = 0;  ///< faces with the corners of an earlier one, turned round or not
+  int turned_edges = 0;    ///< edges whose two triangles run along them the same way
 
   bool closed() const { return open_edges == 0 && crowded_edges == 0 && turned_edges == 0; }
 };

@@ -8,6 +8,7 @@
 #include <assimp/DefaultIOSystem.h>
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -16,6 +17,7 @@
 
 #include "app/geometry/read_in_child.h"
 #include "app/geometry/read_ply.h"
+#include "app/geometry/read_text_mesh.h"
 
 namespace pregrasp {
 namespace {
@@ -61,10 +63,12 @@ class FencedFiles : public Assimp::DefaultIOSystem {
   }
 
   bool Exists(const char* name) const override {
-    return IsAllowed(name) && DefaultIOSystem::Exists(name);
+    const std::string file = FindNamed(name);
+    return IsAllowed(file) && DefaultIOSystem::Exists(file.c_str());
   }
   Assimp::IOStream* Open(const char* name, const char* mode = "rb") override {
-    if (IsAllowed(name)) return DefaultIOSystem::Open(name, mode);
+    const std::string file = FindNamed(name);
+    if (IsAllowed(file)) return DefaultIOSystem::Open(file.c_str(), mode);
     refused_ = name;
     return nullptr;
   }
@@ -72,7 +76,23 @@ class FencedFiles : public Assimp::DefaultIOSystem {
   const std::string& refused() const { return refused_; }
 
  private:
-  bool IsAllowed(const char* name) const {
+  // In glTF a file's name is a URI, in which a blank is %20; assimp passes it on as it is.
+  static std::string FindNamed(const std::string& name) {
+    std::error_code error;
+    if (fs::exists(name, error)) return name;
+    std::string decoded;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+      unsigned char byte = 0;
+      const char* digits = name.data() + i + 1;
+      const bool is_code = name[i] == '%' && i + 2 < name.size() &&
+                           std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+      decoded += is_code ? static_cast<char>(byte) : name[i];
+      if (is_code) i += 2;
+    }
+    return decoded.find('\0') == std::string::npos ? decoded : name;
+  }
+
+  bool IsAllowed(const std::string& name) const {
     std::error_code error;
     const fs::path real = fs::canonical(name, error);
     if (error || !fs::is_regular_file(real, error)) return false;
@@ -96,6 +116,8 @@ const aiScene* Import(Assimp::Importer& importer, const fs::path& file) {
       aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
           aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
           aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
+  // The file's own frame, as of every other format; assimp would turn it until y is up.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   auto* files = new FencedFiles(file);  // the importer's from the next line on
   importer.SetIOHandler(files);
   std::string problem;
@@ -117,14 +139,23 @@ const aiScene* Import(Assimp::Importer& importer, const fs::path& file) {
                        problem.empty() ? "which it cannot" : "of which it says: " + problem);
 }
 
-PlyContent ReadPly(const fs::path& file) {
+std::string ReadBytes(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+// What a reader of ours makes of a file's bytes. @param kind  "a PLY file".
+template <typename Parse>
+auto ParseAs(const std::string& kind, const std::string& bytes, const Parse& parse) {
   try {
-    return ParsePly(bytes);
+    return parse(bytes);
   } catch (const std::runtime_error& error) {
-    throw UnreadableFile("a PLY file", std::string("which ") + error.what());
+    throw UnreadableFile(kind, std::string("which ") + error.what());
   }
+}
+
+PlyContent ReadPly(const fs::path& file) {
+  return ParseAs("a PLY file", ReadBytes(file), ParsePly);
 }
 
 void RequireTriangles(std::size_t count) {
@@ -139,6 +170,11 @@ TriangleMesh ReadPlyTriangles(const fs::path& file) {
   PlyContent content = ReadPly(file);
   RequireTriangles(static_cast<std::size_t>(content.F.rows()));
   return {std::move(content.V), std::move(content.F)};
+}
+
+TriangleMesh WithTriangles(TriangleMesh mesh) {
+  RequireTriangles(static_cast<std::size_t>(mesh.F.rows()));
+  return mesh;
 }
 
 TriangleMesh ImportTriangles(const fs::path& file) {
@@ -182,7 +218,15 @@ TriangleMesh ImportTriangles(const fs::path& file) {
 
 TriangleMesh ReadTriangles(const fs::path& file) {
   RequireReadable(file);
-  if (Extension(file) == ".ply") return ReadPlyTriangles(file);
+  const std::string extension = Extension(file);
+  if (extension == ".ply") return ReadPlyTriangles(file);
+  if (extension == ".off") {
+    return WithTriangles(ParseAs("an OFF file", ReadBytes(file), ParseOff));
+  }
+  if (extension == ".stl") {
+    const std::string bytes = ReadBytes(file);
+    if (IsTextStl(bytes)) return WithTriangles(ParseAs("an STL file", bytes, ParseTextStl));
+  }
   return ReadInChild([&] { return ImportTriangles(file); });
 }
 

@@ -17,8 +17,9 @@ struct UnreadableFile : std::runtime_error {
   std::string got;  ///< follows the file's name: "which does not exist"
 };
 
-/// All triangles of a file as they are: PLY through our own reader, else through assimp in a
-/// process of its own (ReadInChild), with the poses of the file's node tree applied. At most 256 MB
+/// All triangles of a file as they are, in its own frame, whichever axis it says is up: PLY, OFF
+/// and STL of text through our own readers, else through assimp in a process of its own
+/// (ReadInChild), with the poses of the file's node tree and COLLADA's unit applied. At most 256 MB
 /// and 2 million triangles.
 /// @throws UnreadableFile
 TriangleMesh ReadTriangles(const std::filesystem::path& file);

@@ -11,8 +11,11 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <vector>
+
+#include "app/geometry/polygon.h"
 
 namespace pregrasp {
 namespace {
@@ -229,22 +232,52 @@ void ReadVertices(Body& body, const Element& element, PlyContent& content) {
   }
 }
 
-void ReadFaces(Body& body, const Element& element, PlyContent& content) {
-  std::vector<std::array<int, 3>> triangles;
+// Faces as they are in the file: the corners of all, and where each one's begin.
+struct Polygons {
+  std::vector<int> corners;
+  std::vector<std::size_t> begins;
+};
+
+Polygons ReadFaces(Body& body, const Element& element) {
+  Polygons polygons;
   constexpr double kMostVertices = std::numeric_limits<int>::max();
   for (std::size_t f = 0; f < element.count; ++f) {
     for (const Property& property : element.properties) {
       const std::vector<double> corners = ReadProperty(body, property, element);
       if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
+      constexpr std::size_t kMostCorners = 4096;
+      if (corners.size() > kMostCorners) {
+        Fail(fmt::format("has a face of {} corners", corners.size()));
+      }
+      polygons.begins.push_back(polygons.corners.size());
       for (const double corner : corners) {
         if (!(corner >= 0.0 && corner < kMostVertices)) {
           Fail(fmt::format("has a face with vertex {}", corner));
         }
+        polygons.corners.push_back(static_cast<int>(corner));
       }
-      for (std::size_t i = 2; i < corners.size(); ++i) {
-        triangles.push_back({static_cast<int>(corners[0]), static_cast<int>(corners[i - 1]),
-                             static_cast<int>(corners[i])});
+    }
+  }
+  polygons.begins.push_back(polygons.corners.size());
+  return polygons;
+}
+
+// The triangles of all faces, once the vertices are known: in a file either may come first.
+void Triangulate(const Polygons& polygons, PlyContent& content) {
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<Vector3> points;
+  for (std::size_t f = 0; f + 1 < polygons.begins.size(); ++f) {
+    const std::span<const int> corners(polygons.corners.data() + polygons.begins[f],
+                                       polygons.begins[f + 1] - polygons.begins[f]);
+    points.clear();
+    for (const int corner : corners) {
+      if (corner >= content.V.rows()) {
+        Fail(fmt::format("has a face with vertex {} of {}", corner, content.V.rows()));
       }
+      points.emplace_back(content.V.row(corner));
+    }
+    for (const std::array<int, 3>& triangle : TriangulatePolygon(points)) {
+      triangles.push_back({corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]});
     }
   }
   content.F.resize(static_cast<int>(triangles.size()), 3);
@@ -262,25 +295,26 @@ PlyContent ParsePly(std::string_view bytes) {
                                      [&](const Element& element) { return element.name == name; });
     if (count > 1) Fail(fmt::format("has {} elements \"{}\"", count, name));
   }
+  const auto strips = std::any_of(header.elements.begin(), header.elements.end(),
+                                  [](const Element& e) { return e.name == "tristrips"; });
+  if (strips) Fail("has triangle strips, which are not read");
   Body body(bytes, header.encoding);
   PlyContent content;
+  Polygons polygons;
   for (const Element& element : header.elements) {
     // Each number takes a byte at least: no file can promise more elements than it has bytes.
     if (element.count > body.size()) Fail(fmt::format("ends within element \"{}\"", element.name));
     if (element.name == "vertex") {
       ReadVertices(body, element, content);
     } else if (element.name == "face") {
-      ReadFaces(body, element, content);
+      polygons = ReadFaces(body, element);
     } else {
       for (std::size_t i = 0; i < element.count; ++i) {
         for (const Property& property : element.properties) ReadProperty(body, property, element);
       }
     }
   }
-  // Faces may come before vertices.
-  if (content.F.rows() > 0 && content.F.maxCoeff() >= content.V.rows()) {
-    Fail(fmt::format("has a face with vertex {} of {}", content.F.maxCoeff(), content.V.rows()));
-  }
+  Triangulate(polygons, content);
   return content;
 }
 

@@ -11,7 +11,7 @@ namespace pregrasp {
 struct PlyContent {
   MatrixX3 V;
   MatrixX3 N;   ///< the vertices' normals as they are in the file; no rows where it has none
-  MatrixX3i F;  ///< polygons as fans from their first corner; no rows for a cloud
+  MatrixX3i F;  ///< polygons triangulated; no rows for a cloud
 };
 
 /// Reads PLY 1.0 (ASCII, binary little- and big-endian): the elements "vertex" and "face"; others

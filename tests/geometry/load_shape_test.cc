@@ -203,6 +203,14 @@ TEST_F(LoadShapeTest, AMeshReadsItsOwnFolderAndNothingElse) {
   EXPECT_EQ(Load("t.obj").F.rows(), 4);
 }
 
+TEST_F(LoadShapeTest, AGltfFileNamesItsBufferByUri) {
+  Write("my block.bin", TetrahedronAsBytes());
+  Write("a.gltf", TetrahedronAsGltf("my%20block.bin"));
+  EXPECT_NEAR(CalcVolume(Load("a.gltf")), 1.0 / 6.0, 1e-6);
+  Write("b.gltf", TetrahedronAsGltf("%2e%2e/outside.bin"));
+  EXPECT_NE(Refusal("b.gltf").find("its own folder"), std::string::npos);
+}
+
 TEST_F(LoadShapeTest, ReadsAnObjAsItIs) {
   const TriangleMesh mesh = testing::MakeTorus(0.04, 0.01, 12, 8);
   Write("a.obj", testing::ObjText(mesh));
