@@ -263,7 +263,8 @@ TEST(PartialDirectoryTest, KilledAtAnyMomentItLeavesTheOldOrTheNewRun) {
   Rng rng(5);
   int replaced = 0;
   std::uint64_t seed_before = 0;
-  std::chrono::duration<double> wait(0.01);  // follows the disk: the kills gather about the moment of the swap
+  std::chrono::duration<double> wait(
+      0.01);  // follows the disk: the kills gather about the moment of the swap
   for (int round = 0; round < 40; ++round) {
     const bool existed = fs::exists(run);
     const pid_t child = fork();
