@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/commands/commands.h"
+#include "app/core/data_folder.h"
 #include "app/core/text.h"
 #include "app/core/thread_pool.h"
 #include "app/job/start_verdict.h"
@@ -46,7 +47,8 @@ int Check(const CheckOptions& options) {
   if (errors > 0) return 2;
   if (!options.no_grasps) {
     ThreadPool pool;
-    const StartCertificate start = FindSceneVerdict(scene, options.seed, pool);
+    const StartCertificate start =
+        FindSceneVerdict(scene, options.seed, DataFolder() / "assets" / "weights", pool);
     const bool graspable = start.verdict == StartVerdict::kGraspable;
     warnings += graspable;
     fmt::print("{}: {}{}\n", scene.object().where, graspable ? "warning: " : "",

@@ -56,8 +56,8 @@ struct CompletedGrasp {
 /// A grasp that the search found, as an entry beside generated ones.
 CompletedGrasp MakeSearchedGrasp(const GraspResult& found, int number);
 
-/// What the generator made, and the numbers that refine it: of stream kGraspCompletion, keyed by
-/// the sample.
+/// What the generator made, and the numbers that refine it: a stream of their own, keyed by the
+/// sample.
 struct GeneratedGrasp {
   GraspPoints points;
   Rng rng;

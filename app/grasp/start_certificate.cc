@@ -12,28 +12,6 @@ namespace pregrasp {
 
 namespace {
 
-// The first of the generated sets that is a grasp.
-std::optional<GraspResult> FindFeasible(const GraspWorld& world,
-                                        const StartCertificateConfig& config,
-                                        const std::vector<std::vector<GraspContact>>& generated,
-                                        const std::vector<RigidTransform>& X_WB, ThreadPool& pool,
-                                        GraspSearchStats* stats) {
-  const int count = static_cast<int>(generated.size());
-  std::vector<std::optional<GraspResult>> results(count);
-  pool.ParallelFor(count, [&](int i, int) {
-    const Rng rng(config.seed, RngStream::kProposedGraspIk, i);
-    GraspResult result = TestGrasp(world, config.search.grasp, generated[i], X_WB, rng);
-    if (result.feasible()) results[i] = std::move(result);
-  });
-  stats->tried += count;
-  for (std::optional<GraspResult>& result : results) {
-    if (!result) continue;
-    stats->feasible = 1;
-    return std::move(result);
-  }
-  return std::nullopt;
-}
-
 void CountPoints(const GraspWorld& world, const std::vector<EdgePoint>& edges,
                  const std::vector<GraspContact>& touched, StartCertificate& certificate) {
   certificate.surface_points = static_cast<int>(world.surface().P.rows());
@@ -102,8 +80,7 @@ std::vector<GraspContact> FindReachableContacts(const GraspWorld& world, const I
 }
 
 StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateConfig& config,
-                              const std::vector<std::vector<GraspContact>>& generated,
-                              ThreadPool& pool,
+                              const GraspProposer& proposer, ThreadPool& pool,
                               const std::function<void(const GraspSearchStats&)>& progress) {
   config.Validate();
   const std::vector<RigidTransform> X_WB = world.StartPoses();
@@ -132,13 +109,17 @@ StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateCon
       return certificate;
     }
   }
-  std::optional<GraspResult> example =
-      FindFeasible(world, config, generated, X_WB, pool, &certificate.search);
+  std::optional<GraspResult> example;
+  if (proposer.propose) {
+    ProposedGrasps proposed = proposer.propose();
+    certificate.proposed_nodes = proposed.nodes;
+    certificate.proposed_samples = proposed.samples;
+    example = std::move(proposed.feasible);
+  }
   if (!example) {
     const ContactPlaces places(world, X_WB, config.search.sampler.slack, edges,
                                kinematics.tip_tolerance);
     GraspSearchResult search = SearchGrasps(places, config.search, {}, config.seed, pool, progress);
-    search.stats.tried += certificate.search.tried;
     certificate.search = search.stats;
     if (!search.found.empty()) example = std::move(search.found.front());
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -33,6 +34,20 @@ struct StartCertificateConfig {
 /// (the project's definition).
 inline constexpr int kLeastWithinReach = 100000;
 
+/// The grasps that a generator proposes for a start, completed and tested.
+struct ProposedGrasps {
+  int nodes = 0;                        ///< contact states that it was asked to complete
+  int samples = 0;                      ///< grasps that it proposed for them, all tested
+  std::optional<GraspResult> feasible;  ///< the first that is a grasp
+};
+
+/// Who proposes grasps for a start: is asked only where there is no proof.
+struct GraspProposer {
+  /// All that the answer depends on, beyond the scene, the configuration's seed and the program.
+  std::string key;
+  std::function<ProposedGrasps()> propose;  ///< empty: nothing is proposed
+};
+
 /// A start whose mu* is no farther than this from the scene's friction is judged thinly.
 inline constexpr double kThinMargin = 0.05;
 
@@ -52,7 +67,9 @@ struct StartCertificate {
   int reachable_edge_points = 0;  ///< of those, where a fingertip can be at some normal of the fan
   double spacing = 0.0;  ///< no point of a flat face is farther than this from one of them [m]
 
-  GraspSearchStats search;             ///< zero if certified
+  int proposed_nodes = 0;    ///< contact states that the generator completed; 0 if certified
+  int proposed_samples = 0;  ///< grasps that it proposed for them
+  GraspSearchStats search;   ///< zero if certified, or if a proposed grasp is feasible
   std::optional<GraspResult> example;  ///< a grasp, if graspable
 };
 
@@ -60,13 +77,10 @@ struct StartCertificate {
 /// First a proof, at all that a fingertip sphere can touch, with circular cones and no limit on
 /// forces: points of the faces (the smallest sphere, let into surroundings and object as far as
 /// kinematic feasibility would), of the edges and of the corners (the whole fan of normals that
-/// leaves the sphere free of the surroundings). Without a proof, the generated sets, if any, and
+/// leaves the sphere free of the surroundings). Without a proof, the proposed grasps, if any, and
 /// then a search of contact sets, edges among them, are put to the full test.
-/// @param generated  sets that a grasp generator proposes for this start; ring and little may be
-///                   dropped.
 StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateConfig& config,
-                              const std::vector<std::vector<GraspContact>>& generated,
-                              ThreadPool& pool,
+                              const GraspProposer& proposer, ThreadPool& pool,
                               const std::function<void(const GraspSearchStats&)>& progress = {});
 
 /// The contacts that the proof is about: those on faces, then those on edges and corners.

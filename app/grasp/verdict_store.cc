@@ -175,6 +175,7 @@ Json ToJson(const StartCertificate& certificate) {
       {"edge_points", certificate.edge_points},
       {"reachable_edge_points", certificate.reachable_edge_points},
       {"spacing", certificate.spacing},
+      {"proposed", {certificate.proposed_nodes, certificate.proposed_samples}},
       {"search",
        {search.drawn, search.plausible, search.on_edges, search.held, search.solved, search.reached,
         search.feasible, search.tried}}};
@@ -204,6 +205,8 @@ StartCertificate ToCertificate(const Json& json) {
   certificate.edge_points = json.at("edge_points").get<int>();
   certificate.reachable_edge_points = json.at("reachable_edge_points").get<int>();
   certificate.spacing = json.at("spacing").get<double>();
+  certificate.proposed_nodes = json.at("proposed").at(0).get<int>();
+  certificate.proposed_samples = json.at("proposed").at(1).get<int>();
   const Json& search = json.at("search");
   GraspSearchStats& stats = certificate.search;
   int i = 0;
@@ -219,19 +222,13 @@ StartCertificate ToCertificate(const Json& json) {
 
 std::string StartVerdictKey(const Scene& scene, const HandModel& hand,
                             const SurfacePointsConfig& surface,
-                            const StartCertificateConfig& config,
-                            const std::vector<std::vector<GraspContact>>& generated) {
+                            const StartCertificateConfig& config, const GraspProposer& proposer) {
   KeyText out;
   out << "start" << Sha256OfProgram().c_str();
   AddScene(scene, out);
   AddHand(hand, out);
   AddConfig(surface, config, out);
-  for (const std::vector<GraspContact>& contacts : generated) {
-    out << static_cast<double>(contacts.size());
-    for (const GraspContact& contact : contacts) {
-      out << static_cast<double>(contact.finger) << contact.p_OC << contact.nhat_O;
-    }
-  }
+  out << proposer.key.c_str();
   return Sha256(out.text());
 }
 
@@ -285,16 +282,16 @@ bool StoreStartVerdict(const std::filesystem::path& folder, const std::string& k
 }
 
 StartCertificate FindStartVerdict(const GraspWorld& world, const StartCertificateConfig& config,
-                                  const std::vector<std::vector<GraspContact>>& generated,
+                                  const GraspProposer& proposer,
                                   const std::vector<std::filesystem::path>& folders,
                                   ThreadPool& pool,
                                   const std::function<void(const GraspSearchStats&)>& progress) {
   const std::string key =
-      StartVerdictKey(world.scene(), world.ik().hand(), world.surface_config(), config, generated);
+      StartVerdictKey(world.scene(), world.ik().hand(), world.surface_config(), config, proposer);
   for (const std::filesystem::path& folder : folders) {
     if (std::optional<StartCertificate> known = LoadStartVerdict(folder, key)) return *known;
   }
-  StartCertificate certificate = CertifyStart(world, config, generated, pool, progress);
+  StartCertificate certificate = CertifyStart(world, config, proposer, pool, progress);
   if (!folders.empty() && !folders.back().empty()) {
     StoreStartVerdict(folders.back(), key, certificate);
   }

@@ -9,13 +9,13 @@
 namespace pregrasp {
 
 /// What a start verdict depends on, as 64 hex digits: shapes, poses, the object's mass and centre
-/// of mass, gravity, fingertips, the hand, generated sets, the configuration, and the program
+/// of mass, gravity, fingertips, the hand, the configuration, who proposes grasps, and the program
 /// itself (the SHA-256 of its file). Names, cameras, friction between bodies and anything else may
 /// change without a new verdict.
 std::string StartVerdictKey(const Scene& scene, const HandModel& hand,
                             const SurfacePointsConfig& surface,
                             const StartCertificateConfig& config,
-                            const std::vector<std::vector<GraspContact>>& generated = {});
+                            const GraspProposer& proposer = {});
 
 /// Where verdicts are kept between runs: $XDG_CACHE_HOME/pregrasp/verdicts, or
 /// ~/.cache/pregrasp/verdicts; empty when neither variable is set.
@@ -33,8 +33,7 @@ bool StoreStartVerdict(const std::filesystem::path& folder, const std::string& k
 
 /// CertifyStart, unless one of `folders` knows the verdict; a new one is stored in the last.
 StartCertificate FindStartVerdict(
-    const GraspWorld& world, const StartCertificateConfig& config,
-    const std::vector<std::vector<GraspContact>>& generated,
+    const GraspWorld& world, const StartCertificateConfig& config, const GraspProposer& proposer,
     const std::vector<std::filesystem::path>& folders, ThreadPool& pool,
     const std::function<void(const GraspSearchStats&)>& progress = {});
 

@@ -39,7 +39,7 @@ void SettleStart(Application& a) {
 void FindVerdict(Application& a) {
   // The verdict is that of the scene as it is written, settled or not.
   a.next.verdict = std::make_shared<const StartCertificate>(
-      FindSceneVerdict(a.job.scene(), a.job.setup().seed, a.job.pool()));
+      FindSceneVerdict(a.job.scene(), a.job.setup().seed, a.job.setup().weights, a.job.pool()));
   const StartCertificate& start = *a.next.verdict;
   a.facts.id = "scene.verdict";
   VerdictFacts facts;
@@ -49,10 +49,11 @@ void FindVerdict(Application& a) {
   facts.thin = start.thin();
   facts.reachable_points = start.reachable_points;
   facts.reachable_edge_points = start.reachable_edge_points;
+  facts.proposed = start.proposed_samples;
   facts.drawn = start.search.drawn;
   facts.plausible = start.search.plausible;
   facts.on_edges = start.search.on_edges;
-  facts.tried = start.search.tried;
+  facts.tried = start.proposed_samples + start.search.tried;
   facts.held = start.search.held;
   facts.reached = start.search.reached;
   facts.feasible = start.verdict == StartVerdict::kGraspable ? 1 : 0;

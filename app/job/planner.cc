@@ -215,9 +215,15 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   if (search.max_sets > 0 && searched.found.empty()) {
     completion.max_solves = completion.max_probes = 0;
   }
-  set.grasps = pregrasp::CompleteGrasps(places, completion,
-                                        GenerateGrasps(X_WB, release, path_rank), fixed, pool_)
-                   .grasps;
+  std::vector<GraspRequest> requests;
+  for (int sample = 0; sample < config_.grasp_samples; ++sample) {
+    requests.push_back({release.conditions[sample % release.conditions.size()],
+                        Rng(seed_, RngStream::kGraspLatent, path_rank, sample),
+                        Rng(seed_, RngStream::kGraspCompletion, path_rank, sample)});
+  }
+  set.grasps =
+      pregrasp::CompleteGrasps(places, completion, GenerateGrasps(X_WB, requests), fixed, pool_)
+          .grasps;
   int number = 0;
   for (const GraspResult& found : searched.found) {
     set.grasps.push_back(MakeSearchedGrasp(found, ++number));
@@ -229,20 +235,18 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   return set;
 }
 
-std::vector<GeneratedGrasp> Planner::GenerateGrasps(const std::vector<RigidTransform>& X_WB,
-                                                    const ReleaseResult& release,
-                                                    int path_rank) const {
+std::vector<GeneratedGrasp> Planner::GenerateGrasps(
+    const std::vector<RigidTransform>& X_WB, const std::vector<GraspRequest>& requests) const {
   const ObjectState seen = MakeObjectState(scorer_->cloud(), X_WB, *environment_, scene().gravity);
   const EncodedState encoded = generator_->Encode(*generator_structure_, seen);
   std::vector<GeneratedGrasp> grasps;
-  for (int sample = 0; sample < config_.grasp_samples; ++sample) {
+  for (const GraspRequest& request : requests) {
     ThrowIfInterrupted();
-    const PlanningContacts conditions = MakePlanningContacts(
-        release.conditions[sample % release.conditions.size()], &X_WB, *environment_);
-    const Rng latent(seed_, RngStream::kGraspLatent, path_rank, sample);
+    const PlanningContacts condition =
+        MakePlanningContacts(request.condition, &X_WB, *environment_);
     const GraspPoints points =
-        generator_->Sample(*generator_structure_, encoded, conditions, 1, latent).front();
-    grasps.push_back({points, Rng(seed_, RngStream::kGraspCompletion, path_rank, sample)});
+        generator_->Sample(*generator_structure_, encoded, condition, 1, request.latent).front();
+    grasps.push_back({points, request.completion});
   }
   return grasps;
 }

@@ -66,6 +66,12 @@ struct ReleaseResult : Released {
   std::vector<Placement> conditions;
 };
 
+/// One grasp to be generated: what it completes, and the numbers that it is drawn and refined with.
+struct GraspRequest {
+  Placement condition;
+  Rng latent, completion;
+};
+
 /// The grasps to choose from on a certified trajectory, tested: those generated, by sample, then
 /// those that a search found.
 struct GraspSet {
@@ -136,10 +142,12 @@ class Planner {
   HandMotion MakeMotion(const Certificate& certificate, const GraspResult& grasp,
                         const LiftResult& lift, const MotionConfig& config) const;
 
- private:
+  /// What the generator makes of each request; not tested.
+  /// @param X_WB  of all bodies, the object first. @throws Interrupted.
   std::vector<GeneratedGrasp> GenerateGrasps(const std::vector<RigidTransform>& X_WB,
-                                             const ReleaseResult& release, int path_rank) const;
+                                             const std::vector<GraspRequest>& requests) const;
 
+ private:
   std::shared_ptr<const World> world_;
   WorldState start_;
   PlannerConfig config_;

@@ -4,15 +4,39 @@
 
 #include <cmath>
 
+#include "app/core/sha256.h"
 #include "app/grasp/verdict_store.h"
+#include "app/job/start_proposals.h"
 
 namespace pregrasp {
 
-StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed, ThreadPool& pool) {
+namespace {
+
+// What the generator's answer depends on beyond scene, seed and program.
+std::string HashWeights(const std::filesystem::path& weights) {
+  std::string key = "weights";
+  for (const char* name : {"score.safetensors", "generator.safetensors"}) {
+    std::error_code none;
+    key += ' ';
+    key += std::filesystem::exists(weights / name, none) ? Sha256OfFile(weights / name) : "none";
+  }
+  return key;
+}
+
+}  // namespace
+
+StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed,
+                                  const std::filesystem::path& weights, ThreadPool& pool) {
   StartCertificateConfig config;
   config.seed = seed;
+  GraspProposer proposer;
+  proposer.key = HashWeights(weights);
+  proposer.propose = [&] {
+    const auto world = std::make_shared<const World>(scene);
+    return ProposeAtStart({world, world->InitialState(), PlannerConfig(), seed, pool, weights});
+  };
   const GraspWorld world(scene, ShadowHand());
-  return FindStartVerdict(world, config, {}, {DefaultVerdictFolder()}, pool);
+  return FindStartVerdict(world, config, proposer, {DefaultVerdictFolder()}, pool);
 }
 
 namespace {
@@ -32,11 +56,11 @@ std::string DescribeSearch(const StartCertificate& start) {
   const GraspSearchStats& search = start.search;
   const bool enough = search.plausible >= kLeastWithinReach;
   return fmt::format(
-      "{}{} contact sets with tips as near and far as a hand brings them were put to the forces, "
-      "{} "
-      "of them with an edge or corner: {} hold, {} of these were put to inverse kinematics, the "
-      "hand "
-      "reaches {}, and none is feasible",
+      "of {} generated grasps for the {} best nodes none is feasible; {}{} contact sets with tips "
+      "as near and far as a hand brings them were put to the forces, {} of them with an edge or "
+      "corner: {} hold, {} of these were put to inverse kinematics, the hand reaches {}, and none "
+      "is feasible",
+      start.proposed_samples, start.proposed_nodes,
       enough ? "" : fmt::format("in {} draws only ", search.drawn), search.plausible,
       search.on_edges, search.held, search.solved, search.reached);
 }
@@ -48,8 +72,11 @@ std::string DescribeExample(const StartCertificate& start) {
     fingers += (fingers.empty() ? "" : ", ") + std::string(FingerName(contact.finger));
     on_edge = on_edge || contact.on_edge;
   }
-  return fmt::format("{} close on it{}, found after {} contact sets", fingers,
-                     on_edge ? " by edges or corners" : "", start.search.tried);
+  const std::string source =
+      start.search.tried > 0 ? fmt::format("found after {} contact sets", start.search.tried)
+                             : fmt::format("one of {} generated grasps", start.proposed_samples);
+  return fmt::format("{} close on it{}, {}", fingers, on_edge ? " by edges or corners" : "",
+                     source);
 }
 
 }  // namespace

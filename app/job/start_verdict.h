@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "app/core/thread_pool.h"
@@ -10,8 +11,11 @@ namespace pregrasp {
 
 /// Whether the object can be grasped where it stands (design, section 4: by proof, else by search):
 /// the verdict stored under the scene's hash, else found now and stored for the next time.
-/// @param scene  loaded.
-StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed, ThreadPool& pool);
+/// @param scene    loaded.
+/// @param weights  the folder of the networks' weights; read only where there is no proof.
+/// @throws InputError for weights that are missing or damaged where they are needed.
+StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed,
+                                  const std::filesystem::path& weights, ThreadPool& pool);
 
 /// One sentence with the numbers that decided.
 std::string DescribeStart(const StartCertificate& certificate);

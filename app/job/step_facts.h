@@ -151,6 +151,7 @@ struct VerdictFacts {
   std::optional<double> mu_star;  ///< none: the proof holds at the largest friction tried
   bool thin = false;
   int reachable_points = 0, reachable_edge_points = 0;
+  int proposed = 0;  ///< grasps of the generator, tested; the rest is of the search
   int drawn = 0, plausible = 0, on_edges = 0, tried = 0, held = 0, reached = 0, feasible = 0;
   std::vector<PlaceFacts> example;  ///< a grasp, if graspable
   std::string sentence;
@@ -163,6 +164,7 @@ struct VerdictFacts {
     visit("thin", self.thin);
     visit("reachable_points", self.reachable_points);
     visit("reachable_edge_points", self.reachable_edge_points);
+    visit("proposed", self.proposed);
     visit("drawn", self.drawn);
     visit("plausible", self.plausible);
     visit("on_edges", self.on_edges);

@@ -136,7 +136,8 @@ function pregrasp.union(parts) end
 ---@field departures string[] from the project's physical rules, a sentence each; empty is within them
 local Session = {}
 
----Whether the object can be grasped where it stands, by faces, edges or corners: by proof, else by search.
+---Whether the object can be grasped where it stands, by faces, edges or corners: by proof, else by generated grasps
+---and a search.
 ---@return Verdict
 function Session:verdict() end
 

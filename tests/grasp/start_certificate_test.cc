@@ -114,25 +114,35 @@ TEST(StartCertificateTest, MoreFrictionThanMuStarUndoesTheProof) {
   EXPECT_NE(Certify(scene).verdict, StartVerdict::kCertified);
 }
 
-TEST(StartCertificateTest, AGeneratedGraspIsFoundWithoutASearch) {
+TEST(StartCertificateTest, TheGeneratorIsAskedOnlyWithoutAProofAndItsGraspEndsTheSearch) {
   const StartCertificate searched = Certify(RulerScene(0.06));
   ASSERT_TRUE(searched.example.has_value());
-  const std::vector<GraspContact> grasp = searched.example->contacts;
-  std::vector<GraspContact> one_sided = grasp;
-  for (GraspContact& contact : one_sided) {
-    contact.p_OC.z() = 0.0015;
-    contact.nhat_O = Vector3::UnitZ();
-  }
+  int asked = 0;
+  ProposedGrasps answer{2, 40, searched.example};
+  const GraspProposer proposer{"test", [&] {
+                                 ++asked;
+                                 return answer;
+                               }};
   ThreadPool pool(2);
-  StartCertificateConfig config;
-  config.search.grasp.kinematics.ik.max_starts = 60;
-  const StartCertificate generated =
-      CertifyStart(GraspWorld(RulerScene(0.06), ShadowHand()), config, {one_sided, grasp}, pool);
+  const auto certify = [&](double overhang) {
+    return CertifyStart(GraspWorld(RulerScene(overhang), ShadowHand()), {}, proposer, pool);
+  };
+  ExpectProof(certify(-0.01));
+  EXPECT_EQ(asked, 0);
+  const StartCertificate generated = certify(0.06);
+  EXPECT_EQ(asked, 1);
   EXPECT_EQ(generated.verdict, StartVerdict::kGraspable);
-  EXPECT_EQ(generated.search.tried, 2);
+  EXPECT_EQ(generated.proposed_nodes, 2);
+  EXPECT_EQ(generated.proposed_samples, 40);
   EXPECT_EQ(generated.search.drawn, 0);
   ASSERT_TRUE(generated.example.has_value());
-  EXPECT_EQ(generated.example->contacts[0].p_OC, grasp[0].p_OC);
+  EXPECT_EQ(generated.example->contacts[0].p_OC, searched.example->contacts[0].p_OC);
+  // A proposal without a grasp leaves the search to decide.
+  answer.feasible.reset();
+  const StartCertificate both = certify(0.06);
+  EXPECT_EQ(both.proposed_samples, 40);
+  EXPECT_GT(both.search.drawn, 0);
+  EXPECT_EQ(both.verdict, StartVerdict::kGraspable);
 }
 
 TEST(StartCertificateTest, ASearchOfFewerSetsThanTheVerdictNeedsIsRefused) {

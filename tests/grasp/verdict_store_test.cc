@@ -32,6 +32,8 @@ StartCertificate MakeGraspable() {
   certificate.surface_points = 1000;
   certificate.reachable_points = 700;
   certificate.spacing = 0.002;
+  certificate.proposed_nodes = 10;
+  certificate.proposed_samples = 200;
   certificate.search = {4096, 3000, 1200, 100, 90, 20, 1, 2990};
   GraspResult grasp;
   grasp.status = GraspStatus::kFeasible;
@@ -77,6 +79,8 @@ TEST_F(VerdictStoreTest, WhatIsStoredIsLoadedToTheLastBit) {
   ASSERT_TRUE(StoreStartVerdict(folder_, kKey, graspable));
   const auto grasp = LoadStartVerdict(folder_, kKey);
   ASSERT_TRUE(grasp.has_value());
+  EXPECT_EQ(grasp->proposed_nodes, 10);
+  EXPECT_EQ(grasp->proposed_samples, 200);
   EXPECT_EQ(grasp->search.tried, 2990);
   EXPECT_EQ(grasp->search.feasible, 1);
   ASSERT_TRUE(grasp->example.has_value());
@@ -205,7 +209,8 @@ TEST(StartVerdictKeyTest, ItChangesWithWhatTheVerdictDependsOnAndNothingElse) {
   config.seed = 1;
   config.search.max_sets += 1;
   EXPECT_TRUE(keys.insert(key(scene, config)).second);
-  EXPECT_TRUE(keys.insert(StartVerdictKey(scene, ShadowHand(), {}, {}, {{GraspContact()}})).second);
+  EXPECT_TRUE(
+      keys.insert(StartVerdictKey(scene, ShadowHand(), {}, {}, {"other weights", {}})).second);
 }
 
 TEST(VerdictFolderTest, ItFollowsTheCacheVariable) {
