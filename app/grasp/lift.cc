@@ -103,6 +103,11 @@ std::string ExplainReason(const LiftResult& lift, LiftReason reason, const Scene
     case LiftReason::kStillTouches:
       return fmt::format("{} still touches the object at the end",
                          scene.bodies.at(lift.touching_body->value).name);
+    case LiftReason::kNotConverged:
+      return fmt::format(
+          "the simulation did not find the contact forces exactly enough: bodies may have sunk "
+          "into each other by {:.1f} mm",
+          1e3 * lift.unresolved);
     case LiftReason::kStepDependent:
       return "half the time step gives another verdict";
   }

@@ -17,6 +17,7 @@ namespace {
 constexpr double kMaxShift = 0.01;         // [m]
 constexpr double kMaxTurnDeg = 15.0;       // [degrees]
 constexpr double kUntouchedSeconds = 0.3;  // at the end
+constexpr double kMaxUnresolved = 1e-3;    // [m], as of a certified plan
 constexpr double kPushSeconds = 0.3, kRestSeconds = 0.5;
 constexpr double kSameContact = 2e-3;  // a pressing finger that the grasp uses where it is [m]
 constexpr double kWorldRadius = 5.0;   // an object farther from its start than this has left [m]
@@ -149,10 +150,12 @@ class Lifter {
   void Step() {
     contacts_.clear();
     before_ = state_;
-    if (stepper_ == Stepper::kKernel) {
-      world_.Step(state_, &contacts_);
-    } else {
-      world_.StepWithSimbody(state_, &contacts_);
+    const Convergence convergence = stepper_ == Stepper::kKernel
+                                        ? world_.Step(state_, &contacts_)
+                                        : world_.StepWithSimbody(state_, &contacts_);
+    if (!convergence.converged) {
+      ++outcome_.not_converged;
+      outcome_.unresolved += world_.config().dt * convergence.residual;
     }
     const BodyState& object = state_.bodies.front();
     const bool is_finite = object.p_WB.allFinite() && object.q_WB.coeffs().allFinite() &&
@@ -228,9 +231,9 @@ void LiftConfig::Validate() const {
 }
 
 const char* LiftReasonName(LiftReason reason) {
-  constexpr const char* kNames[] = {"no_free_direction", "never_free",    "no_forces",
-                                    "gives_way",         "diverged",      "tip_overlap",
-                                    "does_not_follow",   "still_touches", "step_dependent"};
+  constexpr const char* kNames[] = {
+      "no_free_direction", "never_free",      "no_forces",     "gives_way",     "diverged",
+      "tip_overlap",       "does_not_follow", "still_touches", "not_converged", "step_dependent"};
   return kNames[static_cast<int>(reason)];
 }
 
@@ -242,13 +245,14 @@ std::vector<LiftReason> JudgeLift(const LiftOutcome& outcome) {
     reasons.push_back(LiftReason::kDoesNotFollow);
   }
   if (outcome.touching_body) reasons.push_back(LiftReason::kStillTouches);
+  if (!(outcome.unresolved <= kMaxUnresolved)) reasons.push_back(LiftReason::kNotConverged);
   return reasons;
 }
 
 bool WithstandsPush(const LiftOutcome& outcome) {
   return !outcome.diverged && outcome.end_shift <= kMaxShift &&
          outcome.end_turn_deg <= kMaxTurnDeg && outcome.tip_overlap <= kTipOverlapAllowed &&
-         !outcome.touching_body;
+         outcome.unresolved <= kMaxUnresolved && !outcome.touching_body;
 }
 
 LiftOutcome SimulateLift(const World& world, const EnvironmentDistance& environment,

@@ -39,6 +39,7 @@ enum class LiftReason {
   kTipOverlap,       ///< a fingertip sphere enters the surroundings by more than 0.3 mm
   kDoesNotFollow,    ///< the object is over 1 cm or 15 degrees from where it should be
   kStillTouches,     ///< something but fingers touches the object at the end
+  kNotConverged,     ///< contact forces were not found to the accuracy that a verdict needs
   kStepDependent,    ///< half the time step gives another verdict
 };
 /// "no_free_direction", ..: the word used in logs and scripts.
@@ -60,6 +61,8 @@ struct LiftOutcome {
   double neighbour_moved = 0.0;       ///< the farthest that one was from its start, at any step [m]
   double neighbour_turned_deg = 0.0;  ///< the most that one had turned, at any step [degrees]
   bool diverged = false;
+  int not_converged = 0;    ///< physics steps that the contact solver left unfinished
+  double unresolved = 0.0;  ///< the overlap that these may have left, summed [m]
 
   /// When closing, lift and hold begin [s].
   double closing_t = 0.0, lift_t = 0.0, hold_t = 0.0;

@@ -90,6 +90,8 @@ LiftFacts MakeLiftFacts(const Application& a, int number, const LiftResult& lift
   facts.pushes = lift.pushes;
   facts.soft = lift.soft;
   facts.stiff = lift.stiff;
+  facts.not_converged = lift.not_converged;
+  facts.unresolved_mm = 1e3 * lift.unresolved;
   for (std::size_t i = 0; i < lift.grip.contacts.size(); ++i) {
     const GraspContact& contact = lift.grip.contacts[i];
     facts.grip.push_back({contact.finger, contact.p_OC, contact.nhat_O,

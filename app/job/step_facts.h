@@ -572,8 +572,10 @@ struct LiftFacts {
   Vector3 direction_W = Vector3::UnitZ();
   int pushes = 0;  ///< of six, withstood
   bool soft = false, stiff = false;
-  std::vector<GraspContactFacts> grip;                          ///< with the forces it holds by
-  NeighbourFacts neighbours;                                    ///< at the end
+  int not_converged = 0;                ///< physics steps that the contact solver left unfinished
+  double unresolved_mm = 0.0;           ///< the overlap that these may have left, summed
+  std::vector<GraspContactFacts> grip;  ///< with the forces it holds by
+  NeighbourFacts neighbours;            ///< at the end
   double neighbour_moved_mm = 0.0, neighbour_turned_deg = 0.0;  ///< the most, at any step
   HandFacts hand;                                               ///< at the grasp
 
@@ -592,6 +594,8 @@ struct LiftFacts {
     visit("pushes", self.pushes);
     visit("soft", self.soft);
     visit("stiff", self.stiff);
+    visit("not_converged", self.not_converged);
+    visit("unresolved_mm", self.unresolved_mm);
     visit("grip", self.grip);
     visit("neighbours", self.neighbours);
     visit("neighbour_moved_mm", self.neighbour_moved_mm);

@@ -206,10 +206,15 @@ Lines Describe(const Scene& /*scene*/, const LiftFacts& facts) {
   lines.push_back(
       fmt::format("off its way\t{:.1f} mm, {:.1f} deg at most", facts.shift_mm, facts.turn_deg));
   lines.push_back(fmt::format("fingertips slid\t{:.1f} mm", facts.slip_mm));
+  if (facts.not_converged > 0) {
+    lines.push_back(fmt::format("not converged\t{} steps, {:.3g} mm", facts.not_converged,
+                                facts.unresolved_mm));
+  }
   if (facts.held) {
     lines.push_back(fmt::format("pushes withstood\t{} of 6", facts.pushes));
-    lines.push_back(fmt::format("softer, stiffer hand\t{}, {}", facts.soft ? "holds" : "drops it",
-                                facts.stiff ? "holds" : "drops it"));
+    lines.push_back(fmt::format("softer, stiffer hand\t{}, {}",
+                                facts.soft ? "holds" : "does not hold",
+                                facts.stiff ? "holds" : "does not hold"));
   }
   return lines;
 }

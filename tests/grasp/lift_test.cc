@@ -206,6 +206,25 @@ TEST(LiftTest, WhatLiesOnTheObjectStillTouchesItAtTheEnd) {
   EXPECT_FALSE(lift.neighbours.disturbed);  // it came up with the carton
 }
 
+TEST(LiftTest, WhatTheContactSolverLeavesUnfinishedIsToldAndFromAMillimetreOnNotHeld) {
+  // A crate of 40 kg stands on a strip of 1 g beside the carton: what carries it is not found.
+  Scene scene = CartonOnTable(0.2);
+  Body crate = FixedBox("crate", {0.3, 0.3, 0.2}, {0.25, 0.25, 0.104});
+  Body strip = FixedBox("strip", {0.3, 0.008, 0.004}, {0.25, 0.25, 0.002});
+  crate.mass_properties = CalcMassProperties(crate.shape, 40.0);
+  strip.mass_properties = CalcMassProperties(strip.shape, 0.001);
+  scene.bodies.push_back(crate);
+  scene.bodies.push_back(strip);
+  const LiftProblem problem(scene);
+  const LiftResult lift = problem.Lift(problem.Pinch(0.03, 0.03));
+  EXPECT_GT(lift.not_converged, 0);
+  EXPECT_GT(lift.unresolved, 1e-3);
+  EXPECT_EQ(lift.reasons, std::vector<LiftReason>{LiftReason::kNotConverged});
+  EXPECT_NE(Explain(lift, scene).find("may have sunk"), std::string::npos);
+  // Alone, the carton's lift leaves nothing of that size.
+  EXPECT_LT(LiftProblem(CartonOnTable(0.2)).Lift(problem.Pinch(0.03, 0.03)).unresolved, 1e-4);
+}
+
 TEST(LiftTest, AWayAsideAndThenUpIsFollowedToItsEnd) {
   LiftProblem problem(CartonOnTable(0.2));
   problem.up.direction_W = Vector3(0.6, 0.0, 0.8);
@@ -258,6 +277,9 @@ TEST(LiftTest, ALiftThatIsNotANumberDoesNotHold) {
   outcome = {};
   outcome.tip_overlap = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(JudgeLift(outcome).empty());
+  outcome = {};
+  outcome.unresolved = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(JudgeLift(outcome), std::vector<LiftReason>{LiftReason::kNotConverged});
   outcome = {};
   EXPECT_TRUE(WithstandsPush(outcome));
   outcome.end_turn_deg = std::numeric_limits<double>::quiet_NaN();
