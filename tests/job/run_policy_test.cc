@@ -90,7 +90,7 @@ TEST_F(RunPolicyTest, TheBetterHalfOfTheScreenedPathsGoesOnAndTheBestIsOptimised
   EXPECT_EQ(second.size(), 3U);
   for (const auto& [path, value] : first) {
     for (const auto& [other, unused] : second) {
-      if (second.count(path) == 0) EXPECT_LE(value, first.at(other)) << path << " " << other;
+      EXPECT_TRUE(second.count(path) > 0 || value <= first.at(other)) << path << " " << other;
     }
   }
   ASSERT_EQ(optimised.size(), 2U);
@@ -134,7 +134,6 @@ TEST_F(RunPolicyTest, TheSummarySaysWhatWasDone) {
   const RunResult result = RunPlanner(timeline, run_, {});
   const RunSummary summary = Summarize(timeline, *result.end);
   EXPECT_EQ(summary.status, result.status);
-  EXPECT_NE(summary.status, "ok");
   EXPECT_EQ(summary.n_paths, 2);
   EXPECT_EQ(summary.counts.nodes, 1600);
   EXPECT_GE(summary.counts.kept, 160 - 1);
