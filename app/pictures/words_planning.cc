@@ -160,8 +160,9 @@ Lines Describe(const Scene& scene, const CertifyFacts& facts) {
   Lines lines;
   if (facts.certified) {
     lines.push_back(fmt::format(
-        "The best plan, simulated again by Simbody and at half the time step, leaves the {} where "
-        "it stays. Without the fingers it {}, so they {}.",
+        "{}, simulated again by Simbody and at half the time step, leaves the {} where it stays. "
+        "Without the fingers it {}, so they {}.",
+        facts.plan == 1 ? "The best plan" : fmt::format("Plan {} of those kept", facts.plan),
         scene.object().name, facts.stays_when_released ? "stays too" : "would move",
         facts.stays_when_released ? "may leave" : "must keep pressing"));
   } else {
@@ -222,7 +223,7 @@ Lines Describe(const Scene& /*scene*/, const LiftFacts& facts) {
 Lines Describe(const Scene& /*scene*/, const FrameFacts& facts) {
   std::vector<std::string> touching;
   for (const PlaceFacts& place : facts.touching) touching.emplace_back(FingerName(place.finger));
-  std::string verdict = "The hand is free of overlaps.";
+  std::string verdict = "The collision check finds the hand free.";
   if (facts.failed) verdict = "No hand pose was found; this is the best attempt.";
   if (!facts.way_clear) verdict = "The way from the frame before goes through something.";
   if (!facts.failed && facts.loosened != "none") {

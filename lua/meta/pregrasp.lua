@@ -576,7 +576,8 @@ function Optimizer:shot(options) end
 ---@field step_id string
 local Trajectory = {}
 
----Generated grasps at the trajectory's end, each refined and tested.
+---Grasps at the trajectory's end, tested and, where feasible, lifted: generated ones, then those of a search. Where
+---the search finds none, the generated ones are not refined.
 ---@param options? GraspsOptions
 ---@return Grasps
 function Trajectory:grasps(options) end
@@ -590,10 +591,10 @@ function Trajectory:grasps(options) end
 ---@field may_drop? boolean ring and little may be left out; true
 ---@field max_refinement? number how far a contact may be moved, 0 to 0.1 m, within the rules at most 0.01; 0.01
 ---@field max_solves? integer moved sets of a sample that are put to inverse kinematics, 0 to 1000; 24
----@field patience? integer rounds after which refinement ends where none is feasible, 1 to 1000; 8
+---@field patience? integer rounds after which refinement ends where none is feasible yet, 1 to 1000; 8
 ---@field max_stiffness_tests? integer sets of each sample tested for whether they are stiff enough to lift; 0: what is feasible will do, 0 to 10000; 40
 ---@field max_probes? integer contact sets drawn where no sample holds: if none does, nothing is refined, 0 to 1e+06; 40000
----@field search_sets? integer contact sets that the search draws after the samples, 0 to 1e+06; 20000
+---@field search_sets? integer contact sets that the search draws beside the samples; 0 does not search, 0 to 1e+06; 20000
 ---@field search_solves? integer of those, put to inverse kinematics, 1 to 10000; 192
 ---@field search_found? integer grasps after which it ends, 1 to 1000; 8
 ---@field starts? integer restarts of inverse kinematics, 1 to 1000; 6
@@ -633,14 +634,15 @@ function Trajectory:shot(options) end
 ---@field r_suc number share of the samples that is feasible, with refinement
 ---@field r_suc_raw number and without
 ---@field num_lifting integer of the feasible ones, those whose lift is held
----@field r_lift number share of all that are feasible and lift
+---@field r_lift number share of the samples that is feasible and whose lift is held
 local Grasps = {}
 
 ---For a loop: for i, grasp in grasps:all() do .. end.
 ---@return fun(): integer, Grasp
 function Grasps:all() end
 
----The feasible grasp that lifts the object, then the one with most room in its forces; nil without any.
+---The feasible grasp that comes first by, in turn: its lift is held, no neighbour is disturbed, pushes withstood,
+---soft and stiff, the wrench's margin; nil without any.
 ---@return Grasp?
 function Grasps:best() end
 
