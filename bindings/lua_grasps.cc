@@ -6,9 +6,10 @@
 namespace pregrasp {
 namespace {
 
-const Schema kLift{"Lift",
-                   {"held", "reasons", "text", "height", "shift_mm", "turn_deg", "slip_mm",
-                    "direction_W", "pushes", "soft", "stiff", "neighbours", "step_id"}};
+const Schema kLift{
+    "Lift",
+    {"held", "reasons", "text", "height", "shift_mm", "turn_deg", "slip_mm", "direction_W",
+     "pushes", "soft", "stiff", "not_converged", "unresolved_mm", "neighbours", "step_id"}};
 
 constexpr int kGraspKib = 20;
 
@@ -131,6 +132,8 @@ Pushed GraspLift(lua_State* L, LuaGrasp& grasp) {
       .Set("pushes", lift.pushes)
       .Set("soft", lift.soft)
       .Set("stiff", lift.stiff)
+      .Set("not_converged", lift.not_converged)
+      .Set("unresolved_mm", lift.unresolved_mm)
       .Set("step_id", grasp.lift->id());
   return {1};
 }

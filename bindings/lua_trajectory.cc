@@ -20,6 +20,8 @@ const Schema kScreening{
     {"round", "iterations", "rollouts", "value", "rest_reward", "score_scale", "best", "step_id"}};
 const Schema kRollout{"Rollout", {"cost", "weight", "terms", "X_WO"}};
 const Schema kNeighbours{"NeighbourMotion", {"worst", "moved_mm", "turned_deg", "disturbed"}};
+const Schema kRobustness{"Robustness",
+                         {"worlds", "held", "worst_shift_mm", "worst_turn_deg", "elsewhere"}};
 const Schema kPlanStage{"PlanStage", {"thumb", "index"}};
 const Schema kPlanFinger{"PlanFinger", {"on", "kept", "p_OC", "nhat_O", "p_WTargets"}};
 
@@ -213,6 +215,22 @@ Pushed TrajectoryNeighbours(lua_State* L, LuaTrajectory& trajectory) {
   return {1};
 }
 
+// nil where it is not certified
+Pushed TrajectoryRobust(lua_State* L, LuaTrajectory& trajectory) {
+  const std::optional<RobustFacts>& robust = trajectory.facts().robust;
+  if (!robust) {
+    lua_pushnil(L);
+    return {1};
+  }
+  RecordWriter record(L, kRobustness);
+  record.Set("worlds", robust->worlds)
+      .Set("held", robust->held)
+      .Set("worst_shift_mm", robust->worst_shift_mm)
+      .Set("worst_turn_deg", robust->worst_turn_deg)
+      .Set("elsewhere", robust->elsewhere);
+  return {1};
+}
+
 Pushed TrajectoryStages(lua_State* L, LuaTrajectory& trajectory) {
   const std::vector<StageFacts>& stages = trajectory.facts().stages;
   lua_createtable(L, static_cast<int>(stages.size()), 0);
@@ -309,6 +327,7 @@ const ClassInfo& TrajectoryClass() {
                                   Property<&TrajectoryMaxForce>("max_force_N"),
                                   Property<&TrajectorySeconds>("seconds"),
                                   Property<&TrajectoryNeighbours>("neighbours"),
+                                  Property<&TrajectoryRobust>("robust"),
                                   Property<&TrajectorySteps>("num_steps"),
                                   Property<&TrajectoryStays>("stays_when_released"),
                                   Property<&TrajectoryReleasedShift>("released_shift_mm"),
@@ -323,7 +342,8 @@ const ClassInfo& TrajectoryClass() {
 }
 
 std::vector<const Schema*> TrajectorySchemas() {
-  return {&kCostTerms, &kScreening, &kRollout, &kNeighbours, &kPlanStage, &kPlanFinger};
+  return {&kCostTerms,  &kScreening, &kRollout,   &kNeighbours,
+          &kRobustness, &kPlanStage, &kPlanFinger};
 }
 
 }  // namespace pregrasp

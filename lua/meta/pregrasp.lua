@@ -551,6 +551,13 @@ function Optimizer:shot(options) end
 ---@field turned_deg number
 ---@field disturbed boolean one turned over 30 degrees, or is over 5 cm lower: never a success
 
+---@class Robustness the plan in five worlds with one change each: friction between bodies, mass, how supports resist turning
+---@field worlds integer
+---@field held integer of them, those in which it holds and ends within 20 mm and 10 degrees of where it should
+---@field worst_shift_mm number between the ends
+---@field worst_turn_deg number
+---@field elsewhere string[] the changes with which it does not hold or ends elsewhere
+
 ---@class Trajectory
 ---@field certified boolean
 ---@field reasons string[] why not; empty if it is
@@ -566,6 +573,7 @@ function Optimizer:shot(options) end
 ---@field max_force_N number of a finger
 ---@field seconds number simulated
 ---@field neighbours NeighbourMotion at its end
+---@field robust Robustness? nil unless it is certified
 ---@field num_steps integer
 ---@field stays_when_released boolean under 10 mm and 5 degrees in 1 s without fingers
 ---@field released_shift_mm number
@@ -701,6 +709,8 @@ function Grasp:shot(options) end
 ---@field pushes integer of six pushes with half the weight at the top, those that it withstands
 ---@field soft boolean whether the lift holds with fingers of 150 N/m too
 ---@field stiff boolean and with 600 N/m
+---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
+---@field unresolved_mm number how far bodies may have sunk into each other in such steps; over 1 it is not held
 ---@field neighbours NeighbourMotion at its end
 ---@field step_id string
 
