@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -284,6 +285,34 @@ ReplayRow ReadRow(const Columns& columns, const Scene& scene) {
   return row;
 }
 
+constexpr double kTogether = 1e-7;  // by which two targets' ways in a row may differ [m]
+
+Vector3 MeanTarget(const ReplayRow& row) {
+  Vector3 mean = Vector3::Zero();
+  int count = 0;
+  for (const ReplayRow::FingerColumns& finger : row.fingers) {
+    if (!finger.on) continue;
+    mean += finger.target_W;
+    ++count;
+  }
+  PREGRASP_CHECK(count > 0);
+  return mean / count;
+}
+
+// Whether the same fingers are on, and the targets of all have gone the same way.
+bool HasMovedTogether(const ReplayRow& from, const ReplayRow& to) {
+  std::optional<Vector3> way;
+  for (int f = 0; f < kNumFingers; ++f) {
+    const ReplayRow::FingerColumns &a = from.fingers[f], &b = to.fingers[f];
+    if (a.on != b.on) return false;
+    if (!b.on) continue;
+    const Vector3 moved = b.target_W - a.target_W;
+    if (!way) way = moved;
+    if ((moved - *way).norm() > kTogether) return false;
+  }
+  return way.has_value();
+}
+
 }  // namespace
 
 std::vector<ReplayRow> ReadReplayTable(const std::filesystem::path& file, const Scene& scene) {
@@ -304,31 +333,27 @@ ReplayResult ReplayInMujoco(const Scene& scene, const std::vector<ReplayRow>& ro
   return Replay(scene, rows, dt).Run();
 }
 
-ReplayVerdict JudgeReplay(const Scene& scene, const std::vector<ReplayRow>& rows,
-                          const RigidTransform& X_WO_end, int touching_body) {
-  // Closed on the object where it was, the targets were at p + f / k with the forces adding up to
-  // minus the weight; since then all have gone the same way.
-  const RigidTransform& X_WO = rows.front().X_WB.front();
-  Vector3 way = Vector3::Zero();
-  double stiffness = 0.0;
-  int count = 0;
-  for (int f = 0; f < kNumFingers; ++f) {
-    const ReplayRow::FingerColumns& last = rows.back().fingers[f];
-    if (!last.on) continue;
-    Vector3 p_OC = rows.front().fingers[f].p_OC;  // where it was put
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-      if (IsPutAnew(rows[i - 1].fingers[f], rows[i].fingers[f])) p_OC = rows[i].fingers[f].p_OC;
-    }
-    way += last.target_W - X_WO * p_OC;
-    stiffness += last.k;
-    ++count;
-  }
-  PREGRASP_CHECK(count > 0);
-  const Vector3 weight = scene.object().mass_properties->mass * scene.gravity;
-  way = way / count + weight / stiffness;
+std::vector<RigidTransform> ObjectPoses(const std::vector<ReplayRow>& rows) {
+  std::vector<RigidTransform> X_WO;
+  for (const ReplayRow& row : rows) X_WO.push_back(row.X_WB.front());
+  return X_WO;
+}
+
+ReplayVerdict JudgeReplay(const std::vector<ReplayRow>& rows,
+                          const std::vector<RigidTransform>& X_WO, int touching_body) {
+  PREGRASP_CHECK(X_WO.size() == rows.size(), X_WO.size(), rows.size());
+  // From the last row on that two targets came to otherwise, all go the same way.
+  std::size_t lift = rows.size() - 1;
+  while (lift > 0 && HasMovedTogether(rows[lift - 1], rows[lift])) --lift;
+  const RigidTransform& X_WO_start = rows.front().X_WB.front();
   ReplayVerdict verdict;
-  verdict.shift = (X_WO_end.translation() - X_WO.translation() - way).norm();
-  verdict.turn_deg = RadToDeg(RotationAngle(X_WO.linear(), X_WO_end.linear()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Vector3 way = i <= lift ? Vector3::Zero() : MeanTarget(rows[i]) - MeanTarget(rows[lift]);
+    verdict.shift =
+        std::max(verdict.shift, (X_WO[i].translation() - X_WO_start.translation() - way).norm());
+    verdict.turn_deg =
+        std::max(verdict.turn_deg, RadToDeg(RotationAngle(X_WO_start.linear(), X_WO[i].linear())));
+  }
   const double share = std::max(verdict.shift / 0.01, verdict.turn_deg / 15.0);
   verdict.held = share <= 1.0 && touching_body < 0;
   verdict.is_close = share > 0.8 && share < 1.2;

@@ -37,15 +37,19 @@ struct ReplayResult {
 /// @param dt  of MuJoCo [s]; light objects on springs of 300 N/m are unstable at 2 ms.
 ReplayResult ReplayInMujoco(const Scene& scene, const std::vector<ReplayRow>& rows, double dt);
 
-/// The verdict on a lift's end, from its table and the object's poses: within 1 cm and 15 degrees
-/// of where the fingers' targets have gone, touched by nothing.
+/// The object's poses in the table itself.
+std::vector<RigidTransform> ObjectPoses(const std::vector<ReplayRow>& rows);
+
+/// The verdict on a lift, from its table and the object's pose at each row: within 1 cm and 15
+/// degrees of where it should be at all of them, touched by nothing at the end. It should be where
+/// it was until the fingers' targets begin to go together, and then go with them.
 struct ReplayVerdict {
   bool held = false;
-  double shift = 0.0;     ///< from where it should be [m]
-  double turn_deg = 0.0;  ///< [degrees]
+  double shift = 0.0;     ///< the farthest from where it should be [m]
+  double turn_deg = 0.0;  ///< the most [degrees]
   bool is_close = false;  ///< within 20 % of a limit: counted apart
 };
-ReplayVerdict JudgeReplay(const Scene& scene, const std::vector<ReplayRow>& rows,
-                          const RigidTransform& X_WO_end, int touching_body);
+ReplayVerdict JudgeReplay(const std::vector<ReplayRow>& rows,
+                          const std::vector<RigidTransform>& X_WO, int touching_body);
 
 }  // namespace pregrasp

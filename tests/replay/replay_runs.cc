@@ -20,8 +20,8 @@ struct Tally {
     const Scene scene = LoadScene(directory / "scene.json");
     const std::vector<ReplayRow> rows = ReadReplayTable(directory / "lift.csv", scene);
     const ReplayResult result = ReplayInMujoco(scene, rows, 2.5e-4);
-    const ReplayVerdict here = JudgeReplay(scene, rows, rows.back().X_WB.front(), -1);
-    const ReplayVerdict there = JudgeReplay(scene, rows, result.X_WO.back(), result.touching_body);
+    const ReplayVerdict here = JudgeReplay(rows, ObjectPoses(rows), -1);
+    const ReplayVerdict there = JudgeReplay(rows, result.X_WO, result.touching_body);
     fmt::print("{}: here {} ({:.1f} mm, {:.1f} degrees), MuJoCo {} ({:.1f} mm, {:.1f} degrees)\n",
                directory.string(), here.held ? "held" : "lost", 1e3 * here.shift, here.turn_deg,
                there.held ? "held" : "lost", 1e3 * there.shift, there.turn_deg);

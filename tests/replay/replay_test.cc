@@ -86,9 +86,11 @@ struct BarLift {
     PREGRASP_CHECK(lift.simulated, Explain(lift, scene));
     const ReplayedRun run(world, lift.trace, true);
     const ReplayResult result = ReplayInMujoco(run.scene, run.rows, kLiftStep);
-    here = JudgeReplay(run.scene, run.rows, run.rows.back().X_WB.front(),
+    here = JudgeReplay(run.rows, ObjectPoses(run.rows),
                        lift.touching_body ? lift.touching_body->value : -1);
-    mujoco = JudgeReplay(run.scene, run.rows, result.X_WO.back(), result.touching_body);
+    mujoco = JudgeReplay(run.rows, result.X_WO, result.touching_body);
+    EXPECT_NEAR(here.shift, lift.shift, 1e-9);
+    EXPECT_NEAR(here.turn_deg, lift.turn_deg, 1e-6);
   }
   ReplayVerdict here, mujoco;
 };
