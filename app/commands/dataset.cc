@@ -11,9 +11,9 @@
 #include "app/commands/progress.h"
 #include "app/core/data_folder.h"
 #include "app/core/error.h"
-#include "app/geometry/point_cloud.h"
 #include "app/training/dataset_run.h"
 #include "app/training/evaluation_scenes.h"
+#include "app/training/packed_states.h"
 #include "bindings/scene_file.h"
 
 namespace pregrasp {
@@ -58,6 +58,15 @@ int MakeLabels(MakeOptions& options) {
   return 0;
 }
 
+int MakeStates(MakeOptions& options) {
+  options.run.shard = ParseShard(options.shard);
+  ProgressLine line;
+  StateItemConfig config;
+  config.item = options.items.Resolve();
+  MakeStateItems(options.run, config, Report("objects with searched states", line));
+  return 0;
+}
+
 void AddMakeOptions(const Subcommand& command, MakeOptions& options) {
   command.Add("--out", options.run.folder, "Folder for the items, one file each").Required();
   command.Add("--items", options.run.items, "Objects in the whole data set")
@@ -91,6 +100,16 @@ void AddLabels(const Subcommand& dataset, Action& action) {
   command.OnChosen([options, &action] { action = [options] { return MakeLabels(*options); }; });
 }
 
+void AddStates(const Subcommand& dataset, Action& action) {
+  auto options = std::make_shared<MakeOptions>();
+  options->items.config.scenes = StateItemConfig().item.scenes;
+  const Subcommand command = dataset.AddCommand("states",
+                                                "Move random objects, and label contacts in each "
+                                                "state by contact searches; goes on likewise");
+  AddMakeOptions(command, *options);
+  command.OnChosen([options, &action] { action = [options] { return MakeStates(*options); }; });
+}
+
 void AddMerge(const Subcommand& dataset, Action& action) {
   auto options = std::make_shared<MergeOptions>();
   const Subcommand command =
@@ -101,6 +120,23 @@ void AddMerge(const Subcommand& dataset, Action& action) {
   command.OnChosen([options, &action] {
     action = [options] {
       MergeDataset(options->folders, options->items, options->out);
+      return 0;
+    };
+  });
+}
+
+void AddPack(const Subcommand& dataset, Action& action) {
+  struct PackOptions {
+    fs::path data, out;
+  };
+  auto options = std::make_shared<PackOptions>();
+  const Subcommand command = dataset.AddCommand(
+      "pack", "Put states and their labels into one small file, which pregrasp-train reads too");
+  command.Add("DATA", options->data, "Folder of a merged data set").Required();
+  command.Add("--out", options->out, "File to write").Required();
+  command.OnChosen([options, &action] {
+    action = [options] {
+      WriteTensors(options->out, PackStates(ReadDataset(options->data)));
       return 0;
     };
   });
@@ -128,14 +164,11 @@ void ItemOptions::AddLabelsTo(const Subcommand& command) {
 }
 
 ItemConfig ItemOptions::Resolve() const {
-  constexpr int kCompared = 500;  // points of an excluded object
   ItemConfig resolved = config;
   for (const fs::path& file : excluded.empty() ? FindEvaluationScenes(DataFolder()) : excluded) {
     std::vector<Setting> settings;
     const Scene scene = LoadSceneFile(file, settings);
-    const Rng rng(0, RngStream::kComparedCloud);
-    resolved.excluded.push_back(
-        {scene.name, SamplePointCloud(scene.object().shape, kCompared, rng).P});
+    resolved.excluded.emplace_back(scene.name, scene.object().shape);
   }
   return resolved;
 }
@@ -145,7 +178,9 @@ void AddDataset(const Subcommand& app, Action& action) {
   dataset.RequireCommand();
   AddGrasps(dataset, action);
   AddLabels(dataset, action);
+  AddStates(dataset, action);
   AddMerge(dataset, action);
+  AddPack(dataset, action);
   AddDatasetPictures(dataset, action);
   AddDatasetProbe(dataset, action);
 }

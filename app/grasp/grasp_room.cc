@@ -104,25 +104,38 @@ double GraspRoom::CalcShare(const std::vector<RigidTransform>& X_WB) const {
   return sum / num_sets();
 }
 
-double GraspRoom::CalcKeptShare(const std::vector<RigidTransform>& X_WB,
-                                const std::vector<GraspContact>& fixed) const {
+double GraspRoom::SumGiven(const std::vector<RigidTransform>& X_WB,
+                           const std::vector<GraspContact>& given,
+                           const std::vector<GraspContact>& pressing) const {
   const WrenchConfig wrench = world_.MakeWrenchConfig(config_.f_min, X_WB.front().linear());
   double sum = 0.0;
   for (int i = 0; i < config_.sets; ++i) {
     Rng rng(seed_, RngStream::kGraspRoomKept, i);
-    const auto contacts = sampler_.Sample(fixed, rng);
+    const auto contacts = sampler_.Sample(given, rng);
     if (!contacts) continue;
-    const double freedom = CalcFreedom(*contacts, X_WB, fixed);
+    const double freedom = CalcFreedom(*contacts, X_WB, pressing);
     if (freedom == 0.0) continue;
     const WrenchStatus status = CalcWrenchStatus(world_.ToWrenchContacts(*contacts), wrench);
     if (status == WrenchStatus::kFeasible) sum += freedom;
   }
-  return config_.kept_share * sum / (std::max(held_share_, kNegligible) * config_.sets);
+  return sum;
+}
+
+double GraspRoom::CalcSumAlone() const { return std::max(held_share_, kNegligible) * config_.sets; }
+
+double GraspRoom::CalcWith(const std::vector<RigidTransform>& X_WB,
+                           const std::vector<GraspContact>& given,
+                           const std::vector<GraspContact>& pressing) const {
+  const double share = SumGiven(X_WB, given, pressing) / CalcSumAlone();
+  PREGRASP_CHECK(std::isfinite(share) && share >= 0.0, share);
+  return share / (share + 1.0);
 }
 
 double GraspRoom::Calc(const std::vector<RigidTransform>& X_WB,
                        const std::vector<GraspContact>& fixed) const {
-  const double share = fixed.empty() ? CalcShare(X_WB) : CalcKeptShare(X_WB, fixed);
+  const double share = fixed.empty()
+                           ? CalcShare(X_WB)
+                           : config_.kept_share * SumGiven(X_WB, fixed, fixed) / CalcSumAlone();
   PREGRASP_CHECK(std::isfinite(share) && share >= 0.0, share);
   return share / (share + config_.half_share);
 }

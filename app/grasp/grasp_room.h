@@ -47,13 +47,22 @@ class GraspRoom {
   double Calc(const std::vector<RigidTransform>& X_WB,
               const std::vector<GraspContact>& fixed) const;
 
+  /// The same of sets that hold the contacts in `given`, as a question about these: in [0, 1), one
+  /// half where as many draws with them hold and are free as hold on the object alone without.
+  /// @param pressing  those of `given` that are there already, whose own room is not asked.
+  double CalcWith(const std::vector<RigidTransform>& X_WB, const std::vector<GraspContact>& given,
+                  const std::vector<GraspContact>& pressing) const;
+
   /// The contact sets on the object alone that its forces do not rule out in any orientation.
   int num_sets() const { return static_cast<int>(sets_.size()); }
 
  private:
   double CalcShare(const std::vector<RigidTransform>& X_WB) const;
-  double CalcKeptShare(const std::vector<RigidTransform>& X_WB,
-                       const std::vector<GraspContact>& fixed) const;
+  // The freedom of `sets` draws with the contacts in `given`, those that hold the object.
+  double SumGiven(const std::vector<RigidTransform>& X_WB, const std::vector<GraspContact>& given,
+                  const std::vector<GraspContact>& pressing) const;
+  // How many of `sets` draws hold the object alone.
+  double CalcSumAlone() const;
   double CalcFreedom(const std::vector<GraspContact>& contacts,
                      const std::vector<RigidTransform>& X_WB,
                      const std::vector<GraspContact>& fixed) const;

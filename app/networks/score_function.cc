@@ -25,7 +25,7 @@ ScoreFunction ScoreFunction::FromTensors(const TensorFile& file) {
   score.encoder_ = SetEncoder::Load(file, "encoder");
   score.contacts_ = ContactFeatureConfig::FromJson(file.metadata_at("contacts"), file.where);
   const std::vector<int> widths = ReadHeadWidths(file, "score");
-  if (widths.back() != 1) throw InputError(file.where, "score", "a head of one output", "");
+  if (widths.back() > 2) throw InputError(file.where, "score", "a head of one output or two", "");
   score.head_ = Head::Load(file, "score", score.encoder_.config().code_size(),
                            ContactFeatureCount(score.contacts_, score.encoder_.config()), widths);
   return score;

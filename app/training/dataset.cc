@@ -9,6 +9,7 @@
 #include "app/core/check.h"
 #include "app/core/error.h"
 #include "app/core/sha256.h"
+#include "app/training/packed_states.h"
 
 namespace pregrasp {
 namespace {
@@ -28,16 +29,21 @@ DatasetItem ReadItem(const ItemFolders& folders, std::int64_t index) {
 
 // What index.json says of one family, or of all.
 struct Counts {
-  std::int64_t items = 0, contexts = 0, grasps = 0, labels = 0;
+  std::int64_t items = 0, contexts = 0, grasps = 0, labels = 0, truths = 0;
 
   void Add(const DatasetItem& item) {
     ++items;
     contexts += static_cast<std::int64_t>(item.contexts.size());
     grasps += static_cast<std::int64_t>(item.grasps.size());
     labels += static_cast<std::int64_t>(item.labels.size());
+    truths += static_cast<std::int64_t>(item.truths.size());
   }
   nlohmann::ordered_json ToJson() const {
-    return {{"items", items}, {"contexts", contexts}, {"grasps", grasps}, {"labels", labels}};
+    return {{"items", items},
+            {"contexts", contexts},
+            {"grasps", grasps},
+            {"labels", labels},
+            {"truths", truths}};
   }
 };
 
@@ -71,7 +77,7 @@ void MergeDataset(const std::vector<fs::path>& folders, std::int64_t count, cons
                       {"items", end - first}});
   }
   nlohmann::ordered_json index;
-  index["format"] = "pregrasp dataset 1";
+  index["format"] = "pregrasp dataset 2";
   index["description"] = nlohmann::ordered_json::parse(sources.description());
   index["counts"] = total.ToJson();
   for (const auto& [family, counts] : families) index["families"][family] = counts.ToJson();
@@ -80,13 +86,18 @@ void MergeDataset(const std::vector<fs::path>& folders, std::int64_t count, cons
 }
 
 Dataset ReadDataset(const fs::path& folder) {
+  if (fs::is_regular_file(folder)) {
+    Dataset dataset = UnpackStates(ReadTensors(folder));
+    dataset.hash = Sha256OfFile(folder);
+    return dataset;
+  }
   const std::string text = ReadWholeFile(folder / kIndexFile);
   Dataset dataset;
   dataset.hash = Sha256(text);
   std::vector<std::pair<std::string, std::string>> shards;
   try {
     const auto index = nlohmann::ordered_json::parse(text);
-    if (index.at("format") != "pregrasp dataset 1") throw InputError("", "", "", "");
+    if (index.at("format") != "pregrasp dataset 2") throw InputError("", "", "", "");
     dataset.description = index.at("description").dump();
     for (const auto& shard : index.at("shards")) {
       shards.emplace_back(shard.at("file").get<std::string>(),

@@ -49,6 +49,15 @@ struct LabelRecord {
   double Value() const;
 };
 
+/// What contact searches say of contacts in one state (search_labels.h).
+struct TruthRecord {
+  int context = 0;
+  PlanningContacts contacts;
+  bool lifted = false;  ///< a grasp with these contacts was found, and lifted
+  double relief = 0.0;  ///< share of reliefs at which a found set has room for them and holds
+  double room = 0.0;    ///< GraspRoom::CalcWith of them
+};
+
 /// An object with all that was found out about it: the unit in which data is made, a pure function
 /// of (configuration, seed, index).
 struct DatasetItem {
@@ -60,11 +69,12 @@ struct DatasetItem {
   std::vector<ContextRecord> contexts;
   std::vector<GraspRecord> grasps;
   std::vector<LabelRecord> labels;
+  std::vector<TruthRecord> truths;
 };
 
-/// Items as tensors: tables item.*, context.*, grasp.*, label.*, where context.item, grasp.context
-/// and label.context are rows of the tables before. Lengths, distances and cosines are kept in
-/// single precision, poses in double.
+/// Items as tensors: tables item.*, context.*, grasp.*, label.*, truth.*, where context.item and
+/// grasp.context, label.context, truth.context are rows of the tables before. Lengths, distances
+/// and cosines are kept in single precision, poses in double.
 TensorFile ItemsToTensors(const std::vector<DatasetItem>& items);
 
 /// @throws InputError if a table is missing, of another shape, or refers to a row that is not.
@@ -84,11 +94,13 @@ void MergeDataset(const std::vector<std::filesystem::path>& folders, std::int64_
 
 struct Dataset {
   std::string description;
-  std::string hash;  ///< SHA-256 of index.json, which names the data for the weights' metadata
+  /// SHA-256 of index.json, or of the packed file: names the data for the weights' metadata.
+  std::string hash;
   std::vector<DatasetItem> items;
 };
 
-/// Reads a merged data set. @throws InputError for a missing or altered shard.
+/// Reads a merged data set, or a file that PackStates made of one. @throws InputError for a missing
+/// or altered shard.
 Dataset ReadDataset(const std::filesystem::path& folder);
 
 }  // namespace pregrasp

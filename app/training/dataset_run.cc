@@ -27,6 +27,13 @@ void MakeGraspItems(const DatasetRun& run, const ItemConfig& config,
       progress);
 }
 
+void MakeStateItems(const DatasetRun& run, const StateItemConfig& config,
+                    const std::function<void(const BatchProgress&)>& progress) {
+  MakeItems(
+      run, config.ToJson(), [&](std::int64_t index) { return MakeStateItem(config, index); },
+      progress);
+}
+
 void RequireDescription(const Dataset& dataset, const ItemConfig& config,
                         const std::filesystem::path& folder) {
   if (dataset.description != config.ToJson()) {

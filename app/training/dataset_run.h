@@ -7,6 +7,7 @@
 
 #include "app/batch/run_items.h"
 #include "app/training/make_item.h"
+#include "app/training/state_item.h"
 
 namespace pregrasp {
 
@@ -30,6 +31,10 @@ void MakeItems(const DatasetRun& run, const std::string& description,
 
 /// Items with grasps, described by `config`.
 void MakeGraspItems(const DatasetRun& run, const ItemConfig& config,
+                    const std::function<void(const BatchProgress&)>& progress);
+
+/// Items with states labelled by search, described by `config`.
+void MakeStateItems(const DatasetRun& run, const StateItemConfig& config,
                     const std::function<void(const BatchProgress&)>& progress);
 
 /// @throws InputError naming `folder` if `dataset` was not made with `config`.

@@ -214,6 +214,33 @@ void WriteLabels(const std::vector<DatasetItem>& items, TensorFile& file) {
   file.tensors["label.present"] = MakeTensor({n, kNumPlanningFingers}, present.values);
 }
 
+void WriteTruths(const std::vector<DatasetItem>& items, TensorFile& file) {
+  Ints context;
+  Floats contacts, progress;
+  Bytes present, lifted;
+  int first = 0;
+  for (const DatasetItem& item : items) {
+    for (const TruthRecord& truth : item.truths) {
+      context.Add(first + truth.context);
+      lifted.Add(truth.lifted ? 1 : 0);
+      progress.Add(truth.relief);
+      progress.Add(truth.room);
+      for (const auto& contact : truth.contacts) {
+        AddContact(contact.value_or(PlanningContact{}), kNoSurroundings, contacts);
+        present.Add(contact ? 1 : 0);
+      }
+    }
+    first += static_cast<int>(item.contexts.size());
+  }
+  const auto n = static_cast<std::int64_t>(context.values.size());
+  file.tensors["truth.context"] = MakeTensor({n}, context.values);
+  file.tensors["truth.lifted"] = MakeTensor({n}, lifted.values);
+  file.tensors["truth.progress"] = MakeTensor({n, 2}, progress.values);
+  file.tensors["truth.contacts"] =
+      MakeTensor({n, kNumPlanningFingers, kContactColumns}, contacts.values);
+  file.tensors["truth.present"] = MakeTensor({n, kNumPlanningFingers}, present.values);
+}
+
 // Where each context of the file went: its item and its number there.
 struct ContextPlace {
   int item, context;
@@ -325,6 +352,30 @@ void ReadLabels(Reader& reader, const std::vector<ContextPlace>& places,
   }
 }
 
+void ReadTruths(Reader& reader, const std::vector<ContextPlace>& places,
+                std::vector<DatasetItem>& items) {
+  const std::int64_t n = reader.RowsOf("truth.context");
+  const auto context = reader.Get<std::int32_t>("truth.context", n, {});
+  const auto lifted = reader.Get<std::uint8_t>("truth.lifted", n, {});
+  const auto progress = reader.Get<float>("truth.progress", n, {2});
+  const auto contacts =
+      reader.Get<float>("truth.contacts", n, {kNumPlanningFingers, kContactColumns});
+  const auto present = reader.Get<std::uint8_t>("truth.present", n, {kNumPlanningFingers});
+  for (std::int64_t t = 0; t < n; ++t) {
+    const ContextPlace& place = places[reader.Index(context[t], places.size(), "truth.context")];
+    TruthRecord record;
+    record.context = place.context;
+    record.lifted = lifted[t] != 0;
+    record.relief = progress[2 * t];
+    record.room = progress[2 * t + 1];
+    for (int f = 0; f < kNumPlanningFingers; ++f) {
+      const std::size_t row = t * kNumPlanningFingers + f;
+      if (present[row]) record.contacts[f] = ContactAt(contacts, row);
+    }
+    items[place.item].truths.push_back(record);
+  }
+}
+
 }  // namespace
 
 double LabelRecord::Value() const {
@@ -336,17 +387,18 @@ double LabelRecord::Value() const {
 
 TensorFile ItemsToTensors(const std::vector<DatasetItem>& items) {
   TensorFile file;
-  file.metadata["format"] = "pregrasp items 1";
+  file.metadata["format"] = "pregrasp items 2";
   WriteItems(items, file);
   WriteContexts(items, file);
   WriteGrasps(items, file);
   WriteLabels(items, file);
+  WriteTruths(items, file);
   return file;
 }
 
 std::vector<DatasetItem> ItemsFromTensors(const TensorFile& file) {
-  if (file.metadata_at("format") != "pregrasp items 1") {
-    throw InputError(file.where, "format", "pregrasp items 1", file.metadata_at("format"));
+  if (file.metadata_at("format") != "pregrasp items 2") {
+    throw InputError(file.where, "format", "pregrasp items 2", file.metadata_at("format"));
   }
   Reader reader(file);
   std::vector<DatasetItem> items;
@@ -355,6 +407,7 @@ std::vector<DatasetItem> ItemsFromTensors(const TensorFile& file) {
   const std::vector<ContextPlace> places = ReadContexts(reader, items, points);
   ReadGrasps(reader, places, items);
   ReadLabels(reader, places, items);
+  ReadTruths(reader, places, items);
   return items;
 }
 

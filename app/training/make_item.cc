@@ -2,27 +2,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <utility>
 
 #include "app/core/error.h"
-#include "app/core/sha256.h"
 #include "app/geometry/point_cloud.h"
 #include "app/graph/learned_scorer.h"
 
 namespace pregrasp {
 namespace {
-
-ContextRecord MakeContext(const GraspWorld& world, const PointCloud& cloud,
-                          const std::vector<RigidTransform>& X_WB) {
-  const ObjectState state =
-      MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity);
-  ContextRecord context;
-  context.X_WO = X_WB.front();
-  context.phi = state.phi;
-  context.occluded = state.occluded;
-  return context;
-}
 
 GraspRecord MakeRecord(const GraspWorld& world, const GrownGrasp& grasp, int context,
                        const std::vector<RigidTransform>& X_WB) {
@@ -41,12 +28,8 @@ GraspRecord MakeRecord(const GraspWorld& world, const GrownGrasp& grasp, int con
 }
 
 bool Resembles(const TrainingObject& object, const std::vector<ExcludedObject>& excluded) {
-  if (excluded.empty()) return false;
-  constexpr int kCompared = 400;
-  const MatrixX3 P = SamplePointCloud(object.shape, kCompared, Rng(0, RngStream::kComparedCloud)).P;
-  return std::any_of(excluded.begin(), excluded.end(), [&](const ExcludedObject& other) {
-    return CalcAlignedChamfer(P, other.P) < kLeastUnlikeness;
-  });
+  return std::any_of(excluded.begin(), excluded.end(),
+                     [&](const ExcludedObject& other) { return other.Resembles(object.shape); });
 }
 
 PointCloud CloudOf(const DatasetItem& item) { return {item.P_O, item.N_O}; }
@@ -55,16 +38,12 @@ PointCloud CloudOf(const DatasetItem& item) { return {item.P_O, item.N_O}; }
 
 std::string ItemConfig::ToJson() const {
   nlohmann::ordered_json json;
-  json["version"] = 2;  // raise with any change that changes items
+  json["version"] = 3;  // raise with any change that changes items
   json["seed"] = seed;
   json["scenes"] = scenes;
   json["points"] = points;
   json["excluded"] = nlohmann::ordered_json::object();
-  for (const ExcludedObject& object : excluded) {
-    const auto* bytes = reinterpret_cast<const char*>(object.P.data());
-    json["excluded"][object.name] =
-        Sha256(std::string_view(bytes, object.P.size() * sizeof(double)));
-  }
+  for (const ExcludedObject& object : excluded) json["excluded"][object.name()] = object.hash();
   return json.dump();
 }
 
@@ -85,6 +64,34 @@ TrainingScene MakeItemScene(const ItemConfig& config, const SceneObject& object,
   return SampleTrainingScene(object, Rng(config.seed, RngStream::kItemScene, index, scene));
 }
 
+PointCloud MakeItemCloud(const ItemConfig& config, const SceneObject& object, std::int64_t index) {
+  return SamplePointCloud(object.object.shape, config.points,
+                          Rng(config.seed, RngStream::kItemCloud, index));
+}
+
+DatasetItem MakeEmptyItem(const SceneObject& object, const PointCloud& cloud, std::int64_t index) {
+  DatasetItem item;
+  item.index = index;
+  item.family = object.object.family;
+  item.name = object.object.name;
+  item.mass = object.object.mass;
+  item.p_OOcm = object.mass.p_BoBcm;
+  item.P_O = cloud.P;
+  item.N_O = cloud.N;
+  return item;
+}
+
+ContextRecord MakeContextRecord(const GraspWorld& world, const PointCloud& cloud,
+                                const std::vector<RigidTransform>& X_WB) {
+  const ObjectState state =
+      MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity);
+  ContextRecord context;
+  context.X_WO = X_WB.front();
+  context.phi = state.phi;
+  context.occluded = state.occluded;
+  return context;
+}
+
 GraspWorld MakeTrainingWorld(const Scene& scene) {
   SurfacePointsConfig surface;
   surface.spacing = 4e-3;
@@ -94,16 +101,8 @@ GraspWorld MakeTrainingWorld(const Scene& scene) {
 
 DatasetItem MakeGraspItem(const ItemConfig& config, std::int64_t index, ThreadPool& pool) {
   const SceneObject object = MakeItemObject(config, index);
-  const PointCloud cloud = SamplePointCloud(object.object.shape, config.points,
-                                            Rng(config.seed, RngStream::kItemCloud, index));
-  DatasetItem item;
-  item.index = index;
-  item.family = object.object.family;
-  item.name = object.object.name;
-  item.mass = object.object.mass;
-  item.p_OOcm = object.mass.p_BoBcm;
-  item.P_O = cloud.P;
-  item.N_O = cloud.N;
+  const PointCloud cloud = MakeItemCloud(config, object, index);
+  DatasetItem item = MakeEmptyItem(object, cloud, index);
   for (int s = 0; s < config.scenes; ++s) {
     const TrainingScene scene = MakeItemScene(config, object, index, s);
     const GraspWorld world = MakeTrainingWorld(scene.scene);
@@ -113,7 +112,7 @@ DatasetItem MakeGraspItem(const ItemConfig& config, std::int64_t index, ThreadPo
     for (const double relief : {0.0, moved}) {
       if (free && relief > 0.0) continue;
       const auto X_WB = MoveSurroundingsAway(scene.scene, cloud.P, relief);
-      ContextRecord context = MakeContext(world, cloud, X_WB);
+      ContextRecord context = MakeContextRecord(world, cloud, X_WB);
       context.kind = scene.kind;
       context.scene = s;
       context.relief = relief;

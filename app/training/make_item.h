@@ -37,6 +37,16 @@ SceneObject MakeItemObject(const ItemConfig& config, std::int64_t index);
 TrainingScene MakeItemScene(const ItemConfig& config, const SceneObject& object, std::int64_t index,
                             int scene);
 
+/// The points of item `index` that the networks see.
+PointCloud MakeItemCloud(const ItemConfig& config, const SceneObject& object, std::int64_t index);
+
+/// An item with nothing found out yet.
+DatasetItem MakeEmptyItem(const SceneObject& object, const PointCloud& cloud, std::int64_t index);
+
+/// The object with all bodies at X_WB, as the networks see it.
+ContextRecord MakeContextRecord(const GraspWorld& world, const PointCloud& cloud,
+                                const std::vector<RigidTransform>& X_WB);
+
 /// What tests of grasps in a training scene share; its surface points are coarser than the
 /// planner's, which only the drawing of contacts sees.
 GraspWorld MakeTrainingWorld(const Scene& scene);

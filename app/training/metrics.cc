@@ -59,6 +59,37 @@ double CalcRankCorrelation(const std::vector<double>& a, const std::vector<doubl
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
+double CalcAuc(const std::vector<double>& truth, const std::vector<double>& prediction) {
+  PREGRASP_CHECK(truth.size() == prediction.size(), truth.size(), prediction.size());
+  const std::vector<double> ranks = CalcRanks(prediction);
+  double sum = 0.0, positives = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] < 0.5) continue;
+    sum += ranks[i];
+    positives += 1.0;
+  }
+  const double negatives = static_cast<double>(truth.size()) - positives;
+  if (positives == 0.0 || negatives == 0.0) return 0.5;
+  return (sum - 0.5 * positives * (positives - 1.0)) / (positives * negatives);
+}
+
+double CalcCalibrationError(const std::vector<double>& truth, const std::vector<double>& prediction,
+                            int bins) {
+  PREGRASP_CHECK(truth.size() == prediction.size() && bins > 0, truth.size(), prediction.size());
+  std::vector<std::size_t> order(truth.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return prediction[i] < prediction[j]; });
+  double error = 0.0;
+  for (int b = 0; b < bins; ++b) {
+    const std::size_t first = truth.size() * b / bins, end = truth.size() * (b + 1) / bins;
+    double difference = 0.0;
+    for (std::size_t k = first; k < end; ++k) difference += prediction[order[k]] - truth[order[k]];
+    error += std::abs(difference) / static_cast<double>(std::max<std::size_t>(1, truth.size()));
+  }
+  return error;
+}
+
 std::vector<CalibrationBin> CalcCalibration(const std::vector<double>& truth,
                                             const std::vector<double>& prediction, int bins) {
   PREGRASP_CHECK(truth.size() == prediction.size() && bins > 0, truth.size(), prediction.size());

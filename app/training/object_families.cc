@@ -270,6 +270,72 @@ Draft Wedge(Rng& rng) {
   return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), Draw(rng, kWood)};
 }
 
+// Corrugated board, clipboards, placemats, folders.
+Draft Panel(Rng& rng) {
+  const double length = rng.Uniform(0.18, 0.45);
+  return MakeBox(length, length * rng.Uniform(0.55, 1.0), rng.Uniform(0.002, 0.006),
+                 rng.Uniform(120.0, 700.0));
+}
+
+// Keyboards, routers, set-top boxes: wide and low, the top sloping to the front.
+Draft Console(Rng& rng) {
+  const double x = rng.Uniform(0.10, 0.20), y = rng.Uniform(0.24, 0.48);
+  const double back = rng.Uniform(0.016, 0.040), front = back * rng.Uniform(0.5, 1.0);
+  const double low = -0.5 * back;
+  // Sections across y, as a wedge's.
+  const auto section = [&](double at) {
+    return Ring{{-0.5 * x, at, low},
+                {-0.5 * x, at, low + back},
+                {0.5 * x, at, low + front},
+                {0.5 * x, at, low}};
+  };
+  TriangleMesh mesh = SkinRings({section(-0.5 * y), section(0.5 * y)});
+  return {Millimetres({x, y, back}), MakeMeshShape(std::move(mesh)), rng.Uniform(350.0, 800.0)};
+}
+
+// Shoe boxes, board games, pizza cartons: wider than a hand spans.
+Draft Crate(Rng& rng) {
+  const double x = rng.Uniform(0.18, 0.34);
+  return MakeBox(x, x * rng.Uniform(0.7, 1.0), rng.Uniform(0.035, 0.13), rng.Uniform(60.0, 250.0));
+}
+
+// Round boards, trivets, cake drums, closed tins of biscuits.
+Draft Disc(Rng& rng) {
+  const double r = rng.Uniform(0.075, 0.15), h = rng.Uniform(0.006, 0.06);
+  return {Millimetres({2.0 * r, h}), Cylinder{r, h}, h < 0.02 ? Draw(rng, kWood) : 180.0};
+}
+
+// Remote controls, phones, glasses' cases: flat with round corners.
+Draft Remote(Rng& rng) {
+  const double x = rng.Uniform(0.12, 0.22), y = rng.Uniform(0.035, 0.085);
+  const double h = rng.Uniform(0.008, 0.032), corner = rng.Uniform(0.006, 0.016);
+  TriangleMesh mesh = SkinRings(
+      {RoundedRectangle(x, y, corner, -0.5 * h), RoundedRectangle(x, y, corner, 0.5 * h)});
+  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), rng.Uniform(500.0, 1300.0)};
+}
+
+// Milk cartons, tea tins, salt: upright, square or nearly.
+Draft Block(Rng& rng) {
+  const double x = rng.Uniform(0.035, 0.095);
+  return MakeBox(x, x * rng.Uniform(0.6, 1.0), rng.Uniform(0.09, 0.25), Draw(rng, kLiquid));
+}
+
+// Soup plates and oven dishes: a rim that stands out over sloping walls.
+Draft Dish(Rng& rng) {
+  const double x = rng.Uniform(0.18, 0.34), y = x * rng.Uniform(0.6, 1.0);
+  const double h = rng.Uniform(0.025, 0.06), t = rng.Uniform(0.004, 0.006);
+  const double rim = rng.Uniform(0.008, 0.022), corner = rng.Uniform(0.3, 0.5) * y;
+  const double s = rng.Uniform(0.65, 0.9), low = -0.5 * h, top = 0.5 * h, in = 2.0 * t;
+  TriangleMesh mesh = SkinRings(
+      {RoundedRectangle(s * x, s * y, s * corner, low), RoundedRectangle(x, y, corner, top - t),
+       RoundedRectangle(x + 2.0 * rim, y + 2.0 * rim, corner + rim, top - t),
+       RoundedRectangle(x + 2.0 * rim, y + 2.0 * rim, corner + rim, top),
+       RoundedRectangle(x - in, y - in, corner - t, top),
+       RoundedRectangle(s * x - in, s * y - in, s * corner - t, low + t)});
+  return {Millimetres({x + 2.0 * rim, y + 2.0 * rim, h}), MakeMeshShape(std::move(mesh)),
+          rng.Uniform(1000.0, 2300.0)};
+}
+
 using Family = std::pair<std::string, std::function<Draft(Rng&)>>;
 
 const std::vector<Family>& Families() {
@@ -280,7 +346,10 @@ const std::vector<Family>& Families() {
       {"bottle", Bottle}, {"flask", Flask},     {"tub", Tub},
       {"tray", Tray},     {"bracket", Bracket}, {"clamp", Clamp},
       {"mug", Mug},       {"hammer", Hammer},   {"driver", Screwdriver},
-      {"pan", Pan},       {"ball", Ball},       {"wedge", Wedge}};
+      {"pan", Pan},       {"ball", Ball},       {"wedge", Wedge},
+      {"panel", Panel},   {"console", Console}, {"crate", Crate},
+      {"disc", Disc},     {"remote", Remote},   {"block", Block},
+      {"dish", Dish}};
   return families;
 }
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <numeric>
+#include <set>
 #include <utility>
 
 #include "app/core/check.h"
@@ -27,7 +28,11 @@ SetEncoderConfig EncoderOf(const ScoreTaskConfig& config) {
   return encoder;
 }
 
-bool HasLabels(const TrainingContext& context) { return !context.labels.empty(); }
+std::function<bool(const TrainingContext&)> HasLabels(LabelSource source) {
+  return [source](const TrainingContext& context) {
+    return source == LabelSource::kSearch ? !context.truths.empty() : !context.labels.empty();
+  };
+}
 
 }  // namespace
 
@@ -42,13 +47,36 @@ const char* ScoreVariantName(ScoreVariant variant) {
   return kVariants[static_cast<std::size_t>(variant)].second;
 }
 
+LabelSource ParseLabelSource(const std::string& name) {
+  for (const LabelSource source : {LabelSource::kSearch, LabelSource::kCompletions}) {
+    if (name == LabelSourceName(source)) return source;
+  }
+  throw InputError("", "source", "search or completions", name);
+}
+
+const char* LabelSourceName(LabelSource source) {
+  return source == LabelSource::kSearch ? "search" : "completions";
+}
+
+ProgressKind ParseProgressKind(const std::string& name) {
+  for (const ProgressKind kind : {ProgressKind::kRelief, ProgressKind::kRoom}) {
+    if (name == ProgressKindName(kind)) return kind;
+  }
+  throw InputError("", "progress", "relief or room", name);
+}
+
+const char* ProgressKindName(ProgressKind kind) {
+  return kind == ProgressKind::kRelief ? "relief" : "room";
+}
+
 struct ScoreTask::Model : torch::nn::Module {
-  Model(const SetEncoderConfig& encoder_config, const ScoreTaskConfig& config, Rng rng) {
+  Model(const SetEncoderConfig& encoder_config, const ScoreTaskConfig& config,
+        const std::vector<int>& widths, Rng rng) {
     encoder = register_module("encoder", std::make_shared<TrainableEncoder>(encoder_config, rng));
     head = register_module("head", std::make_shared<TrainableHead>(
                                        encoder_config.code_size() +
                                            ContactFeatureCount(config.contacts, encoder_config),
-                                       config.head_widths, rng));
+                                       widths, rng));
     if (config.variant == ScoreVariant::kFrozenEncoder) {
       for (const torch::Tensor& parameter : encoder->parameters()) {
         torch::Tensor(parameter).set_requires_grad(false);
@@ -65,31 +93,53 @@ ScoreTask::ScoreTask(const std::shared_ptr<const Dataset>& dataset,
                      const ScoreTaskConfig& config)
     : config_(config),
       validation_families_(validation_families),
-      data_(PrepareTrainingData(dataset, config.encoder.levels, validation_families, HasLabels)),
+      data_(PrepareTrainingData(dataset, config.encoder.levels, validation_families,
+                                HasLabels(config.source))),
       order_(static_cast<std::int64_t>(data_.training.size()), config.seed) {
   config_.encoder = EncoderOf(config);
-  model_ = std::make_shared<Model>(config_.encoder, config_,
+  model_ = std::make_shared<Model>(config_.encoder, config_, head_widths(),
                                    Rng(config.seed, RngStream::kInitialWeights));
   module_ = model_;
 }
 
+std::vector<int> ScoreTask::head_widths() const {
+  std::vector<int> widths = config_.hidden_widths;
+  widths.push_back(num_outputs());
+  return widths;
+}
+
+std::vector<ScoreTask::Label> ScoreTask::LabelsOf(const TrainingContext& context) const {
+  std::vector<Label> labels;
+  if (config_.source == LabelSource::kCompletions) {
+    for (const LabelRecord* label : context.labels) {
+      labels.push_back({&label->contacts, {static_cast<float>(label->Value()), 0.0F}});
+    }
+    return labels;
+  }
+  for (const TruthRecord* truth : context.truths) {
+    const double progress = config_.progress == ProgressKind::kRelief ? truth->relief : truth->room;
+    labels.push_back(
+        {&truth->contacts, {static_cast<float>(progress), truth->lifted ? 1.0F : 0.0F}});
+  }
+  return labels;
+}
+
 torch::Tensor ScoreTask::CalcLogits(const std::vector<TrainingState>& states,
-                                    const std::vector<std::vector<const LabelRecord*>>& labels) {
+                                    const std::vector<std::vector<Label>>& labels) {
   const EncoderBatch batch = BuildEncoderBatch(config_.encoder, states);
   QueryBatchBuilder queries(config_.encoder, config_.contacts);
   for (std::size_t s = 0; s < states.size(); ++s) {
-    for (const LabelRecord* label : labels[s]) {
-      queries.Add(batch, static_cast<int>(s), states[s], label->contacts);
+    for (const Label& label : labels[s]) {
+      queries.Add(batch, static_cast<int>(s), states[s], *label.contacts);
     }
   }
-  return model_->head
-      ->Apply(GatherHeadInputs(model_->encoder->Apply(batch), queries.Build(), config_.contacts))
-      .squeeze(1);
+  return model_->head->Apply(
+      GatherHeadInputs(model_->encoder->Apply(batch), queries.Build(), config_.contacts));
 }
 
 torch::Tensor ScoreTask::CalcLoss(std::int64_t step) {
   std::vector<TrainingState> states;
-  std::vector<std::vector<const LabelRecord*>> labels;
+  std::vector<std::vector<Label>> labels;
   std::vector<float> values;
   Rng rng(config_.seed, RngStream::kBatchNoise, step);
   for (const std::int64_t number : order_.Draw(step, config_.contexts_per_step)) {
@@ -97,14 +147,16 @@ torch::Tensor ScoreTask::CalcLoss(std::int64_t step) {
     const double heading = rng.Uniform(0.0, 2.0 * kPi);
     states.push_back({context.structure, &context.context->phi, &context.context->occluded,
                       CalcTrainingFrame(context.context->X_WO.linear(), heading)});
+    const std::vector<Label> all = LabelsOf(context);
     labels.emplace_back();
-    const int count = static_cast<int>(context.labels.size());
-    for (const int i : DrawSubset(count, config_.labels_per_context, rng)) {
-      labels.back().push_back(context.labels[i]);
-      values.push_back(static_cast<float>(context.labels[i]->Value()));
+    for (const int i : DrawSubset(static_cast<int>(all.size()), config_.labels_per_context, rng)) {
+      labels.back().push_back(all[i]);
+      values.insert(values.end(), all[i].values.begin(), all[i].values.begin() + num_outputs());
     }
   }
-  return torch::binary_cross_entropy_with_logits(CalcLogits(states, labels), torch::tensor(values));
+  const torch::Tensor target = torch::tensor(values).view({-1, num_outputs()});
+  return num_outputs() *
+         torch::binary_cross_entropy_with_logits(CalcLogits(states, labels), target);
 }
 
 ScoreTask::Predictions ScoreTask::Predict(const std::vector<TrainingContext>& contexts) {
@@ -112,42 +164,69 @@ ScoreTask::Predictions ScoreTask::Predict(const std::vector<TrainingContext>& co
   constexpr std::size_t kBatch = 32;
   for (std::size_t first = 0; first < contexts.size(); first += kBatch) {
     std::vector<TrainingState> states;
-    std::vector<std::vector<const LabelRecord*>> labels;
+    std::vector<std::vector<Label>> labels;
     for (std::size_t c = first; c < std::min(contexts.size(), first + kBatch); ++c) {
       const TrainingContext& context = contexts[c];
       states.push_back({context.structure, &context.context->phi, &context.context->occluded,
                         CalcTrainingFrame(context.context->X_WO.linear(), 0.0)});
-      labels.push_back(context.labels);
-      for (const LabelRecord* label : context.labels) {
-        result.truth.push_back(label->Value());
-        result.item.push_back(context.item);
+      labels.push_back(LabelsOf(context));
+      for (const Label& label : labels.back()) {
+        result.truth.push_back(label.values[0]);
+        if (num_outputs() > 1) result.lifted.push_back(label.values[1]);
+        result.context.push_back(&context);
       }
     }
     const torch::Tensor scores = torch::sigmoid(CalcLogits(states, labels)).contiguous();
-    result.prediction.insert(result.prediction.end(), scores.data_ptr<float>(),
-                             scores.data_ptr<float>() + scores.numel());
+    const float* values = scores.data_ptr<float>();
+    for (std::int64_t i = 0; i < scores.size(0); ++i, values += num_outputs()) {
+      result.prediction.push_back(values[0]);
+      if (num_outputs() > 1) result.lifted_prediction.push_back(values[1]);
+    }
   }
   return result;
 }
 
+Json ScoreTask::EvaluateSome(const Predictions& all,
+                             const std::function<bool(const TrainingContext&)>& keep) const {
+  std::vector<double> truth, prediction, lifted, lifted_prediction;
+  for (std::size_t i = 0; i < all.truth.size(); ++i) {
+    if (!keep(*all.context[i])) continue;
+    truth.push_back(all.truth[i]);
+    prediction.push_back(all.prediction[i]);
+    if (all.lifted.empty()) continue;
+    lifted.push_back(all.lifted[i]);
+    lifted_prediction.push_back(all.lifted_prediction[i]);
+  }
+  Json metrics{{"labels", truth.size()},
+               {"r2", CalcR2(truth, prediction)},
+               {"rank_correlation", CalcRankCorrelation(truth, prediction)}};
+  if (all.lifted.empty()) return metrics;
+  metrics["lifted_share"] = lifted.empty() ? 0.0
+                                           : std::accumulate(lifted.begin(), lifted.end(), 0.0) /
+                                                 static_cast<double>(lifted.size());
+  metrics["auc"] = CalcAuc(lifted, lifted_prediction);
+  metrics["calibration_error"] = CalcCalibrationError(lifted, lifted_prediction);
+  return metrics;
+}
+
 Json ScoreTask::Evaluate() {
   const Predictions all = Predict(data_.validation);
-  Json metrics{{"labels", all.truth.size()},
-               {"r2", CalcR2(all.truth, all.prediction)},
-               {"rank_correlation", CalcRankCorrelation(all.truth, all.prediction)}};
-  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> families;
-  for (std::size_t i = 0; i < all.truth.size(); ++i) {
-    families[all.item[i]->family].first.push_back(all.truth[i]);
-    families[all.item[i]->family].second.push_back(all.prediction[i]);
+  Json metrics = EvaluateSome(all, [](const TrainingContext&) { return true; });
+  std::set<std::string> families;
+  for (const TrainingContext* context : all.context) families.insert(context->item->family);
+  for (const std::string& family : families) {
+    metrics["families"][family] = EvaluateSome(
+        all, [&](const TrainingContext& context) { return context.item->family == family; });
   }
-  for (const auto& [family, pair] : families) {
-    metrics["families"][family] = {
-        {"labels", pair.first.size()},
-        {"r2", CalcR2(pair.first, pair.second)},
-        {"rank_correlation", CalcRankCorrelation(pair.first, pair.second)}};
+  for (const bool held : {true, false}) {
+    metrics[held ? "held" : "not_held"] = EvaluateSome(all, [&](const TrainingContext& context) {
+      return (context.context->kind.find("held") != std::string::npos) == held;
+    });
   }
   metrics["calibration"] = Json::array();
-  for (const CalibrationBin& bin : CalcCalibration(all.truth, all.prediction)) {
+  const bool two = !all.lifted.empty();
+  for (const CalibrationBin& bin : CalcCalibration(two ? all.lifted : all.truth,
+                                                   two ? all.lifted_prediction : all.prediction)) {
     metrics["calibration"].push_back({{"low", bin.low},
                                       {"high", bin.high},
                                       {"count", bin.count},
@@ -164,7 +243,9 @@ std::string ScoreTask::Describe() const {
               {"validation", validation_families_},
               {"encoder", Json::parse(config_.encoder.ToJson())},
               {"contacts", Json::parse(config_.contacts.ToJson())},
-              {"head", config_.head_widths},
+              {"head", head_widths()},
+              {"labels", LabelSourceName(config_.source)},
+              {"progress", ProgressKindName(config_.progress)},
               {"contexts_per_step", config_.contexts_per_step},
               {"labels_per_context", config_.labels_per_context},
               {"seed", config_.seed}}

@@ -1,5 +1,11 @@
 #pragma once
 
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "app/training/torch_networks.h"
 #include "app/training/training_data.h"
 #include "app/training/training_run.h"
@@ -13,17 +19,36 @@ enum class ScoreVariant { kFull, kNoSdf, kNoShape, kFrozenEncoder };
 ScoreVariant ParseScoreVariant(const std::string& name);
 const char* ScoreVariantName(ScoreVariant variant);
 
+/// Whose labels are learned.
+enum class LabelSource {
+  kSearch,       ///< TruthRecord: progress and lifted, two outputs
+  kCompletions,  ///< LabelRecord: the paper's share of feasible completions, one output
+};
+
+/// "search", "completions". @throws InputError for another name.
+LabelSource ParseLabelSource(const std::string& name);
+const char* LabelSourceName(LabelSource source);
+
+/// Which of TruthRecord's values stands for progress.
+enum class ProgressKind { kRelief, kRoom };
+/// "relief", "room". @throws InputError for another name.
+ProgressKind ParseProgressKind(const std::string& name);
+const char* ProgressKindName(ProgressKind kind);
+
 struct ScoreTaskConfig {
   SetEncoderConfig encoder;
   ContactFeatureConfig contacts;
-  std::vector<int> head_widths = {256, 256, 1};
+  std::vector<int> hidden_widths = {256, 256};
+  LabelSource source = LabelSource::kSearch;
+  ProgressKind progress = ProgressKind::kRelief;
   ScoreVariant variant = ScoreVariant::kFull;
   int contexts_per_step = 16;
   int labels_per_context = 16;
   std::uint64_t seed = 1;
 };
 
-/// The score function and its labels. Loss: cross entropy of the label, which is a share.
+/// The score function and its labels. Loss: the sum of the outputs' cross entropies; a label is a
+/// share, or yes or no.
 class ScoreTask : public TrainingTask {
  public:
   ScoreTask(const std::shared_ptr<const Dataset>& dataset,
@@ -39,8 +64,9 @@ class ScoreTask : public TrainingTask {
 
   /// Predictions for all labels of some contexts, in order; and the labels.
   struct Predictions {
-    std::vector<double> truth, prediction;
-    std::vector<const DatasetItem*> item;
+    std::vector<double> truth, prediction;          ///< of progress
+    std::vector<double> lifted, lifted_prediction;  ///< empty for LabelSource::kCompletions
+    std::vector<const TrainingContext*> context;
   };
   Predictions Predict(const std::vector<TrainingContext>& contexts);
 
@@ -48,8 +74,19 @@ class ScoreTask : public TrainingTask {
 
  private:
   struct Model;
+  // Contacts with what is to be predicted of them.
+  struct Label {
+    const PlanningContacts* contacts = nullptr;
+    std::array<float, 2> values{};  // by ScoreOutput
+  };
+  std::vector<Label> LabelsOf(const TrainingContext& context) const;
+  int num_outputs() const { return config_.source == LabelSource::kSearch ? 2 : 1; }
+  std::vector<int> head_widths() const;
+  // #labels x num_outputs().
   torch::Tensor CalcLogits(const std::vector<TrainingState>& states,
-                           const std::vector<std::vector<const LabelRecord*>>& labels);
+                           const std::vector<std::vector<Label>>& labels);
+  nlohmann::ordered_json EvaluateSome(
+      const Predictions& all, const std::function<bool(const TrainingContext&)>& keep) const;
 
   ScoreTaskConfig config_;
   std::vector<std::string> validation_families_;

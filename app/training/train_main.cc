@@ -30,7 +30,7 @@ struct Options {
   TrainingConfig training;
   ScoreTaskConfig score;
   GeneratorTaskConfig generator;
-  std::string variant = "full", encoder = "default";
+  std::string variant = "full", encoder = "default", source = "search", progress = "relief";
 };
 
 // Step, loss and time left: one line that renews itself on a terminal, plain lines otherwise.
@@ -103,6 +103,8 @@ SetEncoderConfig EncoderNamed(const std::string& name) {
 int TrainScore(Options options) {
   options.score.encoder = EncoderNamed(options.encoder);
   options.score.variant = ParseScoreVariant(options.variant);
+  options.score.source = ParseLabelSource(options.source);
+  options.score.progress = ParseProgressKind(options.progress);
   options.score.seed = options.training.seed;
   ScoreTask task(std::make_shared<Dataset>(ReadDataset(options.data)), options.validation,
                  options.score);
@@ -153,6 +155,12 @@ int Run(int argc, char** argv) {
   CLI::App* score = app.add_subcommand("score", "The score function");
   AddCommonOptions(*score, options);
   score->add_option("--variant", options.variant, "full, no-sdf, no-shape or frozen-encoder")
+      ->capture_default_str();
+  score
+      ->add_option("--source", options.source,
+                   "Whose labels: search (progress and lifted), or completions (the paper's)")
+      ->capture_default_str();
+  score->add_option("--progress", options.progress, "What stands for progress: relief or room")
       ->capture_default_str();
   score->add_option("--labels", options.score.labels_per_context, "Labels per context and step")
       ->capture_default_str();

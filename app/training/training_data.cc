@@ -27,10 +27,11 @@ TrainingData PrepareTrainingData(std::shared_ptr<const Dataset> dataset,
     data.structures.push_back(BuildCloudStructure(item.P_O, Matrix3::Identity(), levels));
     std::vector<TrainingContext> contexts;
     for (const ContextRecord& context : item.contexts) {
-      contexts.push_back({&item, &context, &data.structures.back(), {}, {}});
+      contexts.push_back({&item, &context, &data.structures.back(), {}, {}, {}});
     }
     for (const LabelRecord& label : item.labels) contexts[label.context].labels.push_back(&label);
     for (const GraspRecord& grasp : item.grasps) contexts[grasp.context].grasps.push_back(&grasp);
+    for (const TruthRecord& truth : item.truths) contexts[truth.context].truths.push_back(&truth);
     const bool held_out = std::find(validation_families.begin(), validation_families.end(),
                                     item.family) != validation_families.end();
     for (TrainingContext& context : contexts) {

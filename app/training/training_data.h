@@ -18,6 +18,7 @@ struct TrainingContext {
   const CloudStructure* structure = nullptr;
   std::vector<const LabelRecord*> labels;
   std::vector<const GraspRecord*> grasps;
+  std::vector<const TruthRecord*> truths;
 };
 
 /// A data set split by family; the contexts point into it.
@@ -27,7 +28,7 @@ struct TrainingData {
   std::vector<TrainingContext> training, validation;
 };
 
-/// @param keep  which contexts count at all: those with labels, or those with grasps.
+/// @param keep  which contexts count at all: those with labels, with grasps, or with truths.
 /// @param validation_families  held out whole. @throws InputError if the data set has none of one.
 TrainingData PrepareTrainingData(std::shared_ptr<const Dataset> dataset,
                                  const std::vector<SetLevelConfig>& levels,

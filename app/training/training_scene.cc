@@ -85,13 +85,14 @@ class SceneDraft {
            {0.0, 0.0, -0.5 * kTableThickness});
   }
 
-  // A table that ends under the object; at rest its centre of mass stays on it.
-  void AddTableEdge(bool at_rest, Rng& rng) {
+  // A table that ends under the object, or up to `inboard` beside it; at rest its centre of mass
+  // stays on it.
+  void AddTableEdge(bool at_rest, double inboard, Rng& rng) {
     const double yaw = DrawHeading(heading_, rng);
     edge_ = Level(yaw);
     const double reach = ExtentAlong(edge_);
     const double most = at_rest ? reach - p_WOcm().dot(edge_) - 0.003 : 0.6 * WidthAlong(edge_);
-    const double over = rng.Uniform(0.0, std::max(0.0, most));
+    const double over = rng.Uniform(-inboard, std::max(0.0, most));
     AddBox("table", {kTable, kTable, kTableThickness}, yaw,
            (reach - over - 0.5 * kTable) * edge_ + Vector3(0.0, 0.0, -0.5 * kTableThickness));
   }
@@ -124,6 +125,21 @@ class SceneDraft {
     }
   }
 
+  // Walls on all four sides but perhaps one, of a box or a drawer.
+  void AddPen(Rng& rng) {
+    const double tall = std::max(0.015, height_ * rng.Uniform(0.3, 1.2));
+    const int open = rng.Uniform() < 0.5 ? static_cast<int>(rng.UniformInt(4)) : -1;
+    for (int side = 0; side < 4; ++side) {
+      const Vector3 dir = Level(heading_ + 0.5 * kPi * side);
+      if (side == open || !HasGround(dir)) continue;
+      const double gap =
+          rng.Uniform() < 0.6 ? rng.Uniform(0.0005, 0.004) : rng.Uniform(0.004, 0.08);
+      AddBox("side", {kWallThickness, 0.5, tall}, heading_ + 0.5 * kPi * side,
+             (ExtentAlong(dir) + gap + 0.5 * kWallThickness) * dir + Vector3(0.0, 0.0, 0.5 * tall));
+    }
+    penned_ = true;
+  }
+
   void AddCeiling(Rng& rng) {
     const double gap = rng.Uniform(0.005, 0.08);
     const Vector3 aside = rng.Uniform(0.0, 0.12) * Level(rng.Uniform(0.0, 2.0 * kPi));
@@ -132,6 +148,7 @@ class SceneDraft {
 
   bool walled() const { return walled_; }
   bool neighboured() const { return neighboured_; }
+  bool penned() const { return penned_; }
   Scene Finish() {
     scene_.name = "training";
     return std::move(scene_);
@@ -142,7 +159,7 @@ class SceneDraft {
   double heading_, height_ = 0.0;
   MatrixX3 P_W_;
   Vector3 edge_ = Vector3::Zero();
-  bool walled_ = false, neighboured_ = false;
+  bool walled_ = false, neighboured_ = false, penned_ = false;
   Scene scene_;
 };
 
@@ -220,7 +237,7 @@ TrainingScene SampleTrainingScene(const SceneObject& object, Rng rng) {
   SceneDraft draft(object, R_WO, raised ? rng.Uniform(0.001, 0.04) : 0.0, heading);
   const bool edge = rng.Uniform() < 0.5;
   if (edge) {
-    draft.AddTableEdge(!tilted && !raised, rng);
+    draft.AddTableEdge(!tilted && !raised, 0.0, rng);
   } else {
     draft.AddTable(rng);
   }
@@ -236,6 +253,32 @@ TrainingScene SampleTrainingScene(const SceneObject& object, Rng rng) {
   if (raised) kind += " raised";
   if (draft.walled()) kind += " wall";
   if (draft.neighboured()) kind += " neighbours";
+  if (ceiling) kind += " ceiling";
+  return {kind, draft.Finish()};
+}
+
+TrainingScene SampleRestingScene(const SceneObject& object, Rng rng) {
+  const double heading = rng.Uniform(0.0, 2.0 * kPi);
+  const Matrix3 R_WO = RotationFromRpy({0.0, 0.0, heading}) * DrawRestingPose(object, rng).R_WO;
+  SceneDraft draft(object, R_WO, 0.0, heading);
+  if (rng.UniformInt(12) == 0) return {"free", draft.Finish()};
+  std::string kind = "table";
+  if (rng.Uniform() < 0.6) {
+    draft.AddTableEdge(true, 0.03, rng);
+    kind = "edge";
+  } else {
+    draft.AddTable(rng);
+  }
+  const double surroundings = rng.Uniform();
+  if (surroundings < 0.25) draft.AddWall(rng);
+  if (surroundings < 0.08) draft.AddWall(rng);
+  if (surroundings > 0.80) draft.AddNeighbours(rng);
+  if (surroundings > 0.60 && surroundings < 0.80) draft.AddPen(rng);
+  const bool ceiling = rng.Uniform() < 0.08;
+  if (ceiling) draft.AddCeiling(rng);
+  if (draft.walled()) kind += " wall";
+  if (draft.neighboured()) kind += " neighbours";
+  if (draft.penned()) kind += " pen";
   if (ceiling) kind += " ceiling";
   return {kind, draft.Finish()};
 }

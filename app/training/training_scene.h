@@ -44,6 +44,12 @@ struct TrainingScene {
 /// surroundings and in any orientation.
 TrainingScene SampleTrainingScene(const SceneObject& object, Rng rng);
 
+/// Draws the start of a motion: the object at rest on a table, whole or with its edge near or under
+/// the object, and more often than not in tight surroundings: walls, neighbours, a compartment
+/// whose walls stand on three or four sides ("pen"), a shelf above. One in twelve without
+/// surroundings, as it rests.
+TrainingScene SampleRestingScene(const SceneObject& object, Rng rng);
+
 /// Every body's pose with the surroundings moved away from the object by `relief` [m], each body
 /// against its own direction to the object at their nearest points. Another part of the body that
 /// is nearly as near, off that direction, is then nearer than `relief` more than it was.

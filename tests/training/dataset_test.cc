@@ -59,6 +59,13 @@ DatasetItem MakeItem(std::int64_t index) {
     label.tries = 10;
     for (int& count : label.feasible) count = static_cast<int>(rng.UniformInt(11));
     item.labels.push_back(label);
+    TruthRecord truth;
+    truth.context = c;
+    truth.contacts[1 - c % 2] = PlanningContact{RandomVector(rng), rng.Direction(), rng.Uniform()};
+    truth.lifted = rng.UniformInt(2) == 1;
+    truth.relief = rng.Uniform();
+    truth.room = rng.Uniform();
+    item.truths.push_back(truth);
   }
   return item;
 }

@@ -37,5 +37,18 @@ TEST(MetricsTest, CalibrationCountsEveryPredictionOnce) {
   EXPECT_DOUBLE_EQ(curve[1].mean_truth, 0.4);
 }
 
+TEST(MetricsTest, TheAreaUnderTheCurveCountsPairs) {
+  EXPECT_DOUBLE_EQ(CalcAuc({0, 0, 1, 1}, {0.1, 0.4, 0.35, 0.8}), 0.75);
+  EXPECT_DOUBLE_EQ(CalcAuc({0, 1}, {0.5, 0.5}), 0.5);
+  EXPECT_DOUBLE_EQ(CalcAuc({1, 0}, {0.9, 0.1}), 1.0);
+  EXPECT_DOUBLE_EQ(CalcAuc({1, 1}, {0.9, 0.1}), 0.5);
+}
+
+TEST(MetricsTest, TheCalibrationErrorIsThatOfEquallyFullBins) {
+  // Two bins of two: the first is right on the average, the second says 0.3 too much.
+  EXPECT_NEAR(CalcCalibrationError({0, 0, 1, 0}, {0.0, 0.0, 0.7, 0.9}, 2), 0.5 * 0.3, 1e-12);
+  EXPECT_DOUBLE_EQ(CalcCalibrationError({}, {}), 0.0);
+}
+
 }  // namespace
 }  // namespace pregrasp

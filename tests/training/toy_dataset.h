@@ -53,6 +53,13 @@ inline Dataset MakeToyDataset(std::uint64_t seed, int items, int points) {
         label.tries = 20;
         label.feasible.fill(static_cast<int>(20.0 * value));
         item.labels.push_back(label);
+        TruthRecord truth;
+        truth.context = c;
+        truth.contacts = label.contacts;
+        truth.relief = value;
+        truth.room = 1.0 - value;
+        truth.lifted = value > 0.4;
+        item.truths.push_back(truth);
       }
       for (int g = 0; g < 4; ++g) {
         GraspRecord grasp;

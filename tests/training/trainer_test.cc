@@ -7,6 +7,7 @@
 #include "app/core/interrupt.h"
 #include "app/networks/score_function.h"
 #include "app/training/generator_task.h"
+#include "app/training/metrics.h"
 #include "app/training/score_task.h"
 #include "tests/training/toy_dataset.h"
 
@@ -78,7 +79,8 @@ class TrainerTest : public testing::Test {
 
   TrainerTest() {
     config_.encoder = generator_.encoder = MakeToyEncoder();
-    config_.head_widths = {32, 1};
+    config_.hidden_widths = {32};
+    config_.source = LabelSource::kCompletions;
     generator_.hidden_widths = {32};
     generator_.latent_size = 4;
     training_.steps = 20;
@@ -148,6 +150,23 @@ TEST_F(TrainerTest, TheScoreLearnsAKnownAnswerOnFamiliesNeverSeen) {
   const auto history = RunTraining(task, training_, Ignore);
   EXPECT_GT(history.back()["metrics"]["r2"].get<double>(), 0.6) << history.dump(1);
   EXPECT_GT(history.back()["metrics"]["rank_correlation"].get<double>(), 0.6);
+}
+
+TEST_F(TrainerTest, BothOutputsLearnTheirOwnLabels) {
+  training_.steps = training_.evaluate_every = 400;
+  config_.source = LabelSource::kSearch;
+  config_.progress = ProgressKind::kRoom;  // of the toys, the other one reversed
+  ScoreTask task = MakeTask();
+  const auto metrics = RunTraining(task, training_, Ignore).back()["metrics"];
+  EXPECT_GT(metrics["r2"].get<double>(), 0.6) << metrics.dump(1);
+  EXPECT_GT(metrics["auc"].get<double>(), 0.9);
+  EXPECT_LT(metrics["calibration_error"].get<double>(), 0.15);
+  const torch::NoGradGuard guard;
+  const ScoreTask::Predictions all = task.Predict(task.data().validation);
+  EXPECT_LT(CalcRankCorrelation(all.prediction, all.lifted_prediction), -0.5);
+  EXPECT_NO_THROW(ScoreFunction::FromTensors(task.Export()));
+  EXPECT_THROW(ParseProgressKind("speed"), InputError);
+  EXPECT_THROW(ParseLabelSource("guess"), InputError);
 }
 
 TEST_F(TrainerTest, AblationsHideWhatTheySay) {

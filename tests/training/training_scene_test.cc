@@ -105,26 +105,30 @@ TEST(TrainingSceneTest, EachBodyMovesByTheReliefAndNoneComesNearer) {
 }
 
 TEST(ObjectSimilarityTest, AnObjectIsLikeItselfHoweverItLies) {
-  const Box box{{0.04, 0.09, 0.20}};
-  const MatrixX3 P = SamplePointCloud(box, 400, Rng(1)).P;
-  const Matrix3 R = Rng(2).Rotation().toRotationMatrix();
-  const MatrixX3 turned = (P * R.transpose()).rowwise() + Vector3(0.1, 0.2, 0.3).transpose();
-  EXPECT_NEAR(CalcAlignedChamfer(P, turned), 0.0, 1e-12);
-  // Two samples of one surface differ by the distance of neighbouring points only.
-  EXPECT_LT(CalcAlignedChamfer(P, SamplePointCloud(box, 400, Rng(9)).P), kLeastUnlikeness);
-  EXPECT_GT(CalcAlignedChamfer(P, SamplePointCloud(Box{{0.04, 0.13, 0.20}}, 400, Rng(3)).P),
-            kLeastUnlikeness);
+  const ExcludedObject box("box", Box{{0.04, 0.09, 0.20}});
+  EXPECT_LT(box.CalcUnlikeness(Box{{0.04, 0.09, 0.20}}), 1e-9);
+  EXPECT_LT(box.CalcUnlikeness(Box{{0.20, 0.04, 0.09}}), 1e-9);
+  // Wide objects too: no noise of samples hides that they are the same.
+  const ExcludedObject wide("keyboard", Box{{0.13, 0.44, 0.02}});
+  EXPECT_LT(wide.CalcUnlikeness(Box{{0.13, 0.44, 0.02}}), 1e-9);
+  EXPECT_NEAR(wide.CalcUnlikeness(Box{{0.13, 0.44, 0.03}}), 0.005, 0.0015);
+  EXPECT_GT(box.CalcUnlikeness(Box{{0.04, 0.15, 0.20}}), kLeastUnlikeness);
+}
+
+TEST(ObjectSimilarityTest, LikeSidesAreEnoughToResemble) {
+  const ExcludedObject box("box", Box{{0.10, 0.20, 0.40}});
+  EXPECT_TRUE(box.Resembles(Box{{0.365, 0.109, 0.219}}));
+  EXPECT_GT(box.CalcUnlikeness(Box{{0.365, 0.109, 0.219}}), kLeastUnlikeness);
+  EXPECT_FALSE(box.Resembles(Box{{0.355, 0.109, 0.219}}));
 }
 
 TEST(ObjectSimilarityTest, TrainingObjectsKeepAwayFromExcludedOnes) {
   ItemConfig config;
-  const auto cloud = [&](std::int64_t index) {
-    const SceneObject object = MakeItemObject(config, index);
-    return SamplePointCloud(object.object.shape, 400, Rng(1)).P;
-  };
+  const Shape drawn = MakeItemObject(config, 3).object.shape;
   // Exclude the very object that would be drawn: another must come in its place.
-  config.excluded.push_back({"evaluation", cloud(3)});
-  EXPECT_GE(CalcAlignedChamfer(cloud(3), config.excluded[0].P), 0.9 * kLeastUnlikeness);
+  config.excluded.emplace_back("evaluation", drawn);
+  EXPECT_TRUE(config.excluded.front().Resembles(drawn));
+  EXPECT_FALSE(config.excluded.front().Resembles(MakeItemObject(config, 3).object.shape));
 }
 
 }  // namespace

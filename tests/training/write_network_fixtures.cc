@@ -23,7 +23,7 @@ void WriteFixtures(const std::filesystem::path& folder) {
   training.warm_up = 5;
   ScoreTaskConfig score;
   score.encoder = MakeToyEncoder();
-  score.head_widths = {32, 1};
+  score.hidden_widths = {32};
   ScoreTask score_task(dataset, kHeldOut, score);
   RunTraining(score_task, training, [](const TrainingProgress&) {});
   GeneratorTaskConfig generator;
@@ -35,9 +35,9 @@ void WriteFixtures(const std::filesystem::path& folder) {
 
   const torch::NoGradGuard guard;
   TensorFile questions = ItemsToTensors({dataset->items[3], dataset->items[7]});
-  const auto predictions = score_task.Predict(score_task.data().validation).prediction;
-  questions.tensors["answer.score"] =
-      MakeTensor<double>({static_cast<std::int64_t>(predictions.size())}, predictions);
+  const ScoreTask::Predictions answers = score_task.Predict(score_task.data().validation);
+  const auto count = static_cast<std::int64_t>(answers.prediction.size());
+  questions.tensors["answer.score"] = MakeTensor<double>({count}, answers.prediction);
   Rng rng(1, RngStream::kTest);
   std::vector<float> latent;
   for (int k = 0; k < 3 * generator.latent_size; ++k) {
