@@ -537,6 +537,7 @@ function Optimizer:shot(options) end
 ---@field tip_overlap number
 ---@field tip_spacing number
 ---@field hold number
+---@field haste number
 ---@field fall number
 
 ---@class Rollout

@@ -348,7 +348,8 @@ ReplayVerdict JudgeReplay(const std::vector<ReplayRow>& rows,
   const RigidTransform& X_WO_start = rows.front().X_WB.front();
   ReplayVerdict verdict;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Vector3 way = i <= lift ? Vector3::Zero() : MeanTarget(rows[i]) - MeanTarget(rows[lift]);
+    Vector3 way = Vector3::Zero();
+    if (i > lift) way = MeanTarget(rows[i]) - MeanTarget(rows[lift]);
     verdict.shift =
         std::max(verdict.shift, (X_WO[i].translation() - X_WO_start.translation() - way).norm());
     verdict.turn_deg =
