@@ -192,6 +192,8 @@ double TrajectoryTipOverlap(LuaTrajectory& t) { return t.facts().max_tip_overlap
 double TrajectoryMaxSpeed(LuaTrajectory& t) { return t.facts().max_speed; }
 double TrajectoryMaxForce(LuaTrajectory& t) { return t.facts().max_force_N; }
 double TrajectorySeconds(LuaTrajectory& t) { return t.facts().seconds; }
+std::vector<double> TrajectoryWaits(LuaTrajectory& t) { return t.facts().waits; }
+std::optional<double> TrajectoryOutOfReach(LuaTrajectory& t) { return t.facts().out_of_reach_t; }
 int TrajectorySteps(LuaTrajectory& t) {
   return static_cast<int>(t.state()->certificate->trace.size()) - 1;
 }
@@ -326,6 +328,8 @@ const ClassInfo& TrajectoryClass() {
                                   Property<&TrajectoryMaxSpeed>("max_speed"),
                                   Property<&TrajectoryMaxForce>("max_force_N"),
                                   Property<&TrajectorySeconds>("seconds"),
+                                  Property<&TrajectoryWaits>("waits"),
+                                  Property<&TrajectoryOutOfReach>("out_of_reach_t"),
                                   Property<&TrajectoryNeighbours>("neighbours"),
                                   Property<&TrajectoryRobust>("robust"),
                                   Property<&TrajectorySteps>("num_steps"),

@@ -167,6 +167,9 @@ Lines Describe(const Scene& scene, const CertifyFacts& facts) {
         facts.stays_when_released ? "may leave" : "must keep pressing"));
   } else {
     lines.push_back("Not certified: " + Join(facts.reasons, "; ") + ".");
+    if (facts.out_of_reach_t) {
+      lines.push_back(fmt::format("out of reach at\t{:.2f} s", *facts.out_of_reach_t));
+    }
   }
   lines.push_back(fmt::format("moves in {:g} s\t{:.2f} mm, {:.2f} deg", facts.hold_seconds,
                               facts.hold_shift_mm, facts.hold_turn_deg));

@@ -573,6 +573,8 @@ function Optimizer:shot(options) end
 ---@field max_speed number of the object [m/s]
 ---@field max_force_N number of a finger
 ---@field seconds number simulated
+---@field waits number[] before each stage, for the hand to bring its fingers to new contacts [s]
+---@field out_of_reach_t number? when the hand was found to have no pose for the contacts [s]; nil if it has one, or the plan fails otherwise
 ---@field neighbours NeighbourMotion at its end
 ---@field robust Robustness? nil unless it is certified
 ---@field num_steps integer

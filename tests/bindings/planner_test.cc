@@ -208,6 +208,7 @@ TEST_F(PlannerScriptTest, ATrajectoryIsCertifiedAndItsGraspsHaveReasons) {
       Script(R"(
     local t = run(optimizer()):certify{ hold_seconds = 0.5 }
     print(t.step_id, t.certified == (#t.reasons == 0), t.num_steps > 100, #t.stages, #t.object.p, t.seconds > 2)
+    assert(#t.waits == #t.stages and t.waits[1] == 0 and not (t.certified and t.out_of_reach_t))
     for _, stage in ipairs(t.stages) do
       if stage.thumb.on then assert(#stage.thumb.p_WTargets == 4 and #stage.thumb.nhat_O == 3) end
     end
