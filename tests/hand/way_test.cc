@@ -73,14 +73,16 @@ TEST_F(WayTest, AWayThroughAThinPlateIsBlockedThoughBothItsEndsAreFree) {
 
 TEST_F(WayTest, ABodyThatComesIntoAStandingHandBlocksTheWay) {
   HandWay way = Way(HandAt({-0.3, 0, 0}), HandAt({-0.3, 0, 0}));
-  way.X_WB = {{At({-0.3, -0.5, 0.05}), At({})}, {At({-0.3, 0.5, 0.05}), At({})}};
+  way.X_WB = {{At({-0.3, -0.5, 0.05}), At(Vector3::Zero())},
+              {At({-0.3, 0.5, 0.05}), At(Vector3::Zero())}};
   EXPECT_FALSE(solver_.CheckWay(way).clear);
-  way.X_WB = {{At({-0.3, -0.5, 0.4}), At({})}, {At({-0.3, 0.5, 0.4}), At({})}};
+  way.X_WB = {{At({-0.3, -0.5, 0.4}), At(Vector3::Zero())},
+              {At({-0.3, 0.5, 0.4}), At(Vector3::Zero())}};
   EXPECT_TRUE(solver_.CheckWay(way).clear);
   // Round it in three pieces: only the poses in between tell.
-  way.X_WB = {{At({-0.3, -0.5, 0.4}), At({})},
-              {At({-0.3, 0.0, 0.1}), At({})},
-              {At({-0.3, 0.5, 0.4}), At({})}};
+  way.X_WB = {{At({-0.3, -0.5, 0.4}), At(Vector3::Zero())},
+              {At({-0.3, 0.0, 0.1}), At(Vector3::Zero())},
+              {At({-0.3, 0.5, 0.4}), At(Vector3::Zero())}};
   EXPECT_FALSE(solver_.CheckWay(way).clear);
 }
 
@@ -108,7 +110,7 @@ TEST_F(WayTest, AHandThatCarriesTheObjectIsNotInItsWay) {
   turn.translation() << 0.0, 0.01, 0.005;
   HandWay way = Way(from, from);
   way.to.X_WH = turn * from.X_WH;
-  way.X_WB = {{X_WO, At({})}, {turn * X_WO, At({})}};
+  way.X_WB = {{X_WO, At(Vector3::Zero())}, {turn * X_WO, At(Vector3::Zero())}};
   const WayResult carried = solver_.CheckWay(way);
   EXPECT_TRUE(carried.clear);
   EXPECT_LE(carried.evaluations, 64);
@@ -135,7 +137,8 @@ TEST_F(WayTest, WhatIsCalledClearIsClearAtEveryMomentAndWhatIsBlockedIsNot) {
     HandConfiguration from = sample(), to = sample();
     to.X_WH.linear() = Eigen::AngleAxisd(0.4, rng.Direction()) * from.X_WH.linear();
     HandWay way = Way(from, to);
-    way.X_WB = {{At({-0.1, 0.3, 0.1}), At({})}, {At({-0.1, 0.1, 0.1}), At({})}};
+    way.X_WB = {{At({-0.1, 0.3, 0.1}), At(Vector3::Zero())},
+                {At({-0.1, 0.1, 0.1}), At(Vector3::Zero())}};
     way.touch.touching[1] = true;
     const WayResult result = solver_.CheckWay(way);
     const double least = SampleLeast(way);
