@@ -12,15 +12,16 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
+#include "app/geometry/mesh_text.h"
 #include "app/geometry/polygon.h"
 
 namespace pregrasp {
 namespace {
 
-[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
+using internal::Fail;
+using internal::NextWord;
 
 enum class Encoding { kAscii, kLittle, kBig };
 enum class Number { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
@@ -49,16 +50,6 @@ std::string_view NextLine(std::string_view& rest) {
   rest.remove_prefix(end + 1);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   return line;
-}
-
-std::string_view NextWord(std::string_view& rest) {
-  constexpr std::string_view kBlank = " \t\r\n\f\v";
-  const std::size_t begin = rest.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  const std::size_t end = std::min(rest.find_first_of(kBlank, begin), rest.size());
-  const std::string_view word = rest.substr(begin, end - begin);
-  rest.remove_prefix(end);
-  return word;
 }
 
 Number ParseType(std::string_view word) {

@@ -7,32 +7,23 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "app/geometry/mesh_text.h"
 #include "app/geometry/polygon.h"
 
 namespace pregrasp {
 namespace {
 
-constexpr std::string_view kBlank = " \t\r\f\v";
-
-[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
+using internal::Fail;
+using internal::kBlank;
+using internal::NextWord;
 
 std::string_view NextLine(std::string_view& rest) {
   const std::string_view line = rest.substr(0, rest.find('\n'));
   rest.remove_prefix(std::min(rest.size(), line.size() + 1));
   return line;
-}
-
-std::string_view NextWord(std::string_view& rest) {
-  const std::size_t begin = rest.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  const std::size_t end = std::min(rest.find_first_of(kBlank, begin), rest.size());
-  const std::string_view word = rest.substr(begin, end - begin);
-  rest.remove_prefix(end);
-  return word;
 }
 
 template <typename T>

@@ -48,6 +48,18 @@ std::optional<Verb> NextOfMotion(const Timeline& timeline, const Node& node) {
   return std::nullopt;
 }
 
+// Keyframes, in-betweens and smoothing of a motion that has begun; with `give_up`, until there is
+// no hope of a motion without failure.
+const Node& DoMotion(Timeline& timeline, const Node& node, bool give_up) {
+  const Node* at = &node;
+  while (const std::optional<Verb> verb = NextOfMotion(timeline, *at)) {
+    ThrowIfInterrupted();
+    if (give_up && timeline.GetState(*at)->motion_state->is_hopeless()) break;
+    at = &timeline.Do(*at, *verb);
+  }
+  return *at;
+}
+
 // Why a motion is none.
 std::string ExplainFailure(const HandMotion& motion, const MotionState& state) {
   for (const int key : state.solved_keys) {
@@ -157,22 +169,12 @@ class Runner {
     for (const int number : order) {
       if (tried == config_.motions || !state->lifts.at(number)->held) break;
       Report(name + ", hand motion", tried++, config_.motions);
-      const Node& moved = TryMotion(grasps, number);
+      const Node& moved =
+          DoMotion(timeline_, timeline_.Do(grasps, Verb::kKeyframe, {{"grasp", number}}), true);
       if (best == &grasps || best->progress < moved.progress) best = &moved;
       if (moved.progress.reached == Progress::Reached::kOk) return ShowFrames(timeline_, moved);
     }
     return *best;
-  }
-
-  // Keyframes, in-betweens and smoothing, until there is no hope of a motion without failure.
-  const Node& TryMotion(const Node& grasps, int number) {
-    const Node* at = &timeline_.Do(grasps, Verb::kKeyframe, {{"grasp", number}});
-    while (const std::optional<Verb> verb = NextOfMotion(timeline_, *at)) {
-      ThrowIfInterrupted();
-      if (timeline_.GetState(*at)->motion_state->is_hopeless()) break;
-      at = &timeline_.Do(*at, *verb);
-    }
-    return *at;
   }
 
   std::string Explain(const Node& end) const {
@@ -307,12 +309,7 @@ std::vector<int> OrderGrasps(const JobState& state) {
 }
 
 const Node& FinishMotion(Timeline& timeline, const Node& node) {
-  const Node* at = &node;
-  while (const std::optional<Verb> verb = NextOfMotion(timeline, *at)) {
-    ThrowIfInterrupted();
-    at = &timeline.Do(*at, *verb);
-  }
-  return *at;
+  return DoMotion(timeline, node, false);
 }
 
 const Node& ShowFrames(Timeline& timeline, const Node& finished) {

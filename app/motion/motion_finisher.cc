@@ -7,6 +7,7 @@
 
 #include "app/core/check.h"
 #include "app/hand/hand_kinematics.h"
+#include "app/motion/touches.h"
 
 namespace pregrasp {
 namespace {
@@ -33,9 +34,7 @@ constexpr int kMaxSteps = 600;
 void MotionFinisher::Run() {
   for (std::size_t i = 0; i < state_.frames.size(); ++i) {
     // In contact, fingers are as near to each other and to the object as they must be.
-    const auto& contacts = state_.task->frames[i].contacts;
-    const bool touches =
-        std::any_of(contacts.begin(), contacts.end(), [](const auto& c) { return c.on; });
+    const bool touches = AnyOn(state_.task->frames[i].contacts);
     const double room = touches ? config_.ik.clearance_buffer : config_.smoothing_clearance;
     asked_.push_back({room, std::min(state_.frames[i].rung, LooseningRung::kClearance1mm),
                       state_.frames[i].configuration, touches ? kHold : kHoldFree});

@@ -12,6 +12,8 @@ constexpr double kBriefly = 0.1;  // a contact that is lost this long is kept [s
 constexpr double kEvery = 0.25;   // reach is looked at this often [s]
 constexpr int kStarts = 50;       // of inverse kinematics, on each rung
 
+Placement::Contact ContactOf(const FingertipState& tip) { return {tip.on, tip.p_OC, tip.nhat_O}; }
+
 bool SameFingersOn(const Contacts& a, const Contacts& b) {
   return std::equal(a.begin(), a.end(), b.begin(),
                     [](const auto& x, const auto& y) { return x.on == y.on; });
@@ -58,10 +60,7 @@ bool AnyOn(const Contacts& contacts) {
 
 Contacts ContactsOn(const WorldState& state) {
   Contacts contacts{};
-  for (int j = 0; j < kNumFingers; ++j) {
-    const FingertipState& tip = state.fingers[j];
-    contacts[j] = {tip.on, tip.p_OC, tip.nhat_O};
-  }
+  for (int j = 0; j < kNumFingers; ++j) contacts[j] = ContactOf(state.fingers[j]);
   return contacts;
 }
 
@@ -76,7 +75,7 @@ std::vector<Contacts> FindTouches(const std::vector<TraceRow>& trace) {
       if (!tip.touching) continue;
       const bool briefly = trace[i].state.t - trace[touched].state.t <= kBriefly;
       for (std::size_t k = briefly ? touched + 1 : i; k <= i; ++k) {
-        touches[k][j] = ContactsOn(trace[k].state)[j];
+        touches[k][j] = ContactOf(trace[k].state.fingers[j]);
       }
       touched = i;
     }
