@@ -39,6 +39,7 @@ const std::vector<std::pair<std::regex, std::set<std::string>>> kOwners = {
     {std::regex("lua.*|lauxlib.*"), {"bindings"}},
     {std::regex("histedit.*"), {"bindings"}},
     {std::regex("openssl/.*"), {"app/core"}},
+    {std::regex("zlib\\.h"), {"app/core", "app/recording"}},
 };
 
 std::string FolderOf(const fs::path& relative) {
