@@ -40,8 +40,8 @@ class PushSampler {
         up_W_(-world.scene().gravity.normalized()) {}
 
   // The end of one push, if it is of use.
-  std::optional<MotionState> Push(const WorldState& start, const ContactPlaces& places,
-                                  Rng& rng) const {
+  std::optional<ReachedState> Push(const WorldState& start, const ContactPlaces& places,
+                                   Rng& rng) const {
     const std::optional<RelativePlan> plan = DrawPlan(places, rng);
     if (!plan) return std::nullopt;
     const PlanOutcome outcome =
@@ -119,13 +119,13 @@ class PushSampler {
     return plan;
   }
 
-  std::optional<MotionState> ToState(const WorldState& end) const {
+  std::optional<ReachedState> ToState(const WorldState& end) const {
     const BodyState& object = end.bodies.front();
     if (object.v_WB.norm() > kStillSpeed || object.w_WB.norm() > kStillTurn) return std::nullopt;
     if (up_W_.dot(object.X_WB() * world_.scene().object().mass_properties->p_BoBcm) < 0.0) {
       return std::nullopt;  // off the table
     }
-    MotionState result;
+    ReachedState result;
     result.state = end;
     result.moved = true;
     const std::vector<RigidTransform> X_WB = world_.GetPoses(end);
@@ -159,19 +159,27 @@ class PushSampler {
   Vector3 up_W_;
 };
 
-// The end of `pool`, held or not, that is farthest from all kept.
-int FindFarthest(const std::vector<MotionState>& pool, const std::vector<MotionState>& kept,
-                 bool held) {
+// An end that may be kept.
+struct Candidate {
+  ReachedState end;
+  double room = 0.0;  // GraspRoom there
+};
+
+// Of the candidates, held or not, that are apart from all kept, the one with the most room or the
+// farthest one; -1 if there is none.
+int FindNext(const std::vector<Candidate>& pool, const std::vector<ReachedState>& kept, bool held,
+             bool by_room) {
   int best = -1;
-  double farthest = kLeastApart;
+  double most = -1.0;
   for (std::size_t i = 0; i < pool.size(); ++i) {
-    if (pool[i].fixed.empty() == held) continue;
+    if (pool[i].end.fixed.empty() == held) continue;
     double apart = std::numeric_limits<double>::infinity();
-    for (const MotionState& other : kept) {
-      apart = std::min(apart, CalcApart(pool[i].state, other.state));
+    for (const ReachedState& other : kept) {
+      apart = std::min(apart, CalcApart(pool[i].end.state, other.state));
     }
-    if (apart > farthest) {
-      farthest = apart;
+    const double value = by_room ? pool[i].room : apart;
+    if (apart > kLeastApart && value > most) {
+      most = value;
       best = static_cast<int>(i);
     }
   }
@@ -180,34 +188,39 @@ int FindFarthest(const std::vector<MotionState>& pool, const std::vector<MotionS
 
 }  // namespace
 
-std::vector<MotionState> SampleMotionStates(const World& world, const GraspWorld& grasp_world,
-                                            const MotionStatesConfig& config, std::uint64_t seed) {
-  std::vector<MotionState> kept(1);
+std::vector<ReachedState> SampleMotionStates(const World& world, const GraspWorld& grasp_world,
+                                             const GraspRoom& room,
+                                             const MotionStatesConfig& config, std::uint64_t seed) {
+  std::vector<ReachedState> kept(1);
   kept.front().state = world.InitialState();
   const PushSampler sampler(world, grasp_world, config);
   const ContactPlaces start_places(grasp_world, world.GetPoses(kept.front().state));
-  std::vector<MotionState> ends;
-  std::vector<int> bases;  // of the ends, those where the object stays by itself
+  std::vector<Candidate> pool;
+  std::vector<int> bases;  // of the candidates, those where the object stays by itself
   for (int i = 0; i < config.pushes; ++i) {
     ThrowIfInterrupted();
     Rng rng(seed, RngStream::kItemGrowth, i);
-    std::optional<MotionState> end;
+    std::optional<ReachedState> end;
     if (!bases.empty() && rng.Uniform() < 0.5) {
-      const WorldState& base = ends[bases[rng.UniformInt(bases.size())]].state;
+      // The better of two: a strip has to come far over the edge before it has room for any grasp.
+      const Candidate& a = pool[bases[rng.UniformInt(bases.size())]];
+      const Candidate& b = pool[bases[rng.UniformInt(bases.size())]];
+      const WorldState& base = (a.room > b.room ? a : b).end.state;
       const ContactPlaces places(grasp_world, world.GetPoses(base));
       end = sampler.Push(base, places, rng);
     } else {
       end = sampler.Push(kept.front().state, start_places, rng);
     }
     if (!end) continue;
-    if (end->fixed.empty()) bases.push_back(static_cast<int>(ends.size()));
-    ends.push_back(std::move(*end));
+    if (end->fixed.empty()) bases.push_back(static_cast<int>(pool.size()));
+    const double free = room.Calc(world.GetPoses(end->state), end->fixed);
+    pool.push_back({std::move(*end), free});
   }
-  bool held = true;
-  for (int misses = 0; misses < 2 && static_cast<int>(kept.size()) < config.states; held = !held) {
-    const int next = FindFarthest(ends, kept, held);
+  int misses = 0;
+  for (int turn = 0; misses < 4 && static_cast<int>(kept.size()) < config.states; ++turn) {
+    const int next = FindNext(pool, kept, turn % 2 == 0, turn % 4 < 2);
     misses = next < 0 ? misses + 1 : 0;
-    if (next >= 0) kept.push_back(ends[next]);
+    if (next >= 0) kept.push_back(pool[next].end);
   }
   return kept;
 }

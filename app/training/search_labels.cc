@@ -44,7 +44,7 @@ bool IsNewGrasp(const Contacts& contacts, const std::vector<Contacts>& known) {
 class StateLabeler {
  public:
   StateLabeler(const World* world, const GraspWorld& grasp_world, const GraspRoom& room,
-               const PointCloud& cloud, const MotionState& state, const SearchLabelConfig& config,
+               const PointCloud& cloud, const ReachedState& state, const SearchLabelConfig& config,
                std::uint64_t seed)
       : world_(world),
         grasp_world_(grasp_world),
@@ -281,7 +281,7 @@ class StateLabeler {
   const World* world_;
   const GraspWorld& grasp_world_;
   const GraspRoom& room_;
-  const MotionState& state_;
+  const ReachedState& state_;
   const SearchLabelConfig& config_;
   std::uint64_t seed_;
   std::vector<RigidTransform> X_WB_;
@@ -306,7 +306,7 @@ SearchLabelConfig::SearchLabelConfig() {
 }
 
 SearchLabels LabelState(const World* world, const GraspWorld& grasp_world, const GraspRoom& room,
-                        const PointCloud& cloud, const MotionState& state,
+                        const PointCloud& cloud, const ReachedState& state,
                         const SearchLabelConfig& config, std::uint64_t seed) {
   return StateLabeler(world, grasp_world, room, cloud, state, config, seed).Label();
 }

@@ -57,7 +57,7 @@ struct SearchLabels {
 /// @param world  null where there are no surroundings.
 /// @param cloud  of the object. @param state  contacts in `fixed` are part of every label.
 SearchLabels LabelState(const World* world, const GraspWorld& grasp_world, const GraspRoom& room,
-                        const PointCloud& cloud, const MotionState& state,
+                        const PointCloud& cloud, const ReachedState& state,
                         const SearchLabelConfig& config, std::uint64_t seed);
 
 }  // namespace pregrasp

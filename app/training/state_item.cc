@@ -47,9 +47,9 @@ DatasetItem MakeStateItem(const StateItemConfig& config, std::int64_t index) {
     const GraspRoom room(grasp_world, config.room, seed);
     std::optional<World> world;  // with nothing to rest on, nothing moves
     if (scene.scene.bodies.size() > 1) world.emplace(scene.scene);
-    std::vector<MotionState> states(1);
-    if (world) states = SampleMotionStates(*world, grasp_world, config.motion, seed);
-    for (const MotionState& state : states) {
+    std::vector<ReachedState> states(1);
+    if (world) states = SampleMotionStates(*world, grasp_world, room, config.motion, seed);
+    for (const ReachedState& state : states) {
       ContextRecord context = MakeContextRecord(
           grasp_world, cloud, world ? world->GetPoses(state.state) : grasp_world.StartPoses());
       context.kind =

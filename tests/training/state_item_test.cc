@@ -45,7 +45,7 @@ struct Labelled {
   GraspWorld grasp_world;
   GraspRoom room;
   PointCloud cloud;
-  MotionState state;
+  ReachedState state;
 };
 
 struct Means {
@@ -118,7 +118,7 @@ TEST(SearchLabelsTest, ContactsThatPressArePartOfEveryLabel) {
 
 TEST(MotionStatesTest, StatesAreApartAndStayWithWhatIsFixed) {
   const Labelled scene(0.02);
-  const auto states = SampleMotionStates(scene.world, scene.grasp_world, {}, 7);
+  const auto states = SampleMotionStates(scene.world, scene.grasp_world, scene.room, {}, 7);
   ASSERT_GE(states.size(), 3U);
   EXPECT_FALSE(states.front().moved);
   bool held = false;
@@ -164,7 +164,7 @@ TEST(SearchLabelsTest, WithoutSurroundingsNothingIsSimulatedAndNothingCanBeMoved
   const GraspWorld grasp_world = MakeTrainingWorld(scene);
   const GraspRoom room(grasp_world, {}, 1);
   const PointCloud cloud = SamplePointCloud(scene.object().shape, 256, Rng(1));
-  const SearchLabels labels = LabelState(nullptr, grasp_world, room, cloud, MotionState(), {}, 1);
+  const SearchLabels labels = LabelState(nullptr, grasp_world, room, cloud, ReachedState(), {}, 1);
   EXPECT_GT(labels.stats.found[0], 0);
   EXPECT_EQ(labels.stats.found[1], 0);
   EXPECT_EQ(labels.stats.lifts, 0);
