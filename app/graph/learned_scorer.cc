@@ -50,8 +50,8 @@ class LearnedScorer::FixedState : public PlacementScorer {
  public:
   // Without poses there are no surroundings.
   FixedState(const LearnedScorer& owner, ObjectState state,
-             std::optional<std::vector<RigidTransform>> X_WB)
-      : owner_(owner), state_(std::move(state)), X_WB_(std::move(X_WB)) {}
+             std::optional<std::vector<RigidTransform>> X_WB, ScoreOutput output)
+      : owner_(owner), state_(std::move(state)), X_WB_(std::move(X_WB)), output_(output) {}
 
   std::vector<double> Score(std::span<const Placement> placements) const override {
     std::vector<PlanningContacts> contacts;
@@ -61,7 +61,7 @@ class LearnedScorer::FixedState : public PlacementScorer {
           MakePlanningContacts(placement, X_WB_ ? &*X_WB_ : nullptr, owner_.environment_));
     }
     const VectorX scores =
-        owner_.score_.ScoreContacts(owner_.structure_, state_, contacts, owner_.pool_);
+        owner_.score_.ScoreContacts(owner_.structure_, state_, contacts, output_, owner_.pool_);
     return {scores.data(), scores.data() + scores.size()};
   }
 
@@ -73,6 +73,7 @@ class LearnedScorer::FixedState : public PlacementScorer {
   const LearnedScorer& owner_;
   ObjectState state_;
   std::optional<std::vector<RigidTransform>> X_WB_;
+  ScoreOutput output_;
 };
 
 LearnedScorer::LearnedScorer(const ScoreFunction& score, const Scene& scene, PointCloud cloud,
@@ -127,22 +128,25 @@ double LearnedScorer::ScoreBestProbes(const ScoredState& state) const {
   }
   if (contacts.empty()) return 0.0;
   const VectorX all = score_.ScoreContacts(
-      structure_, MakeObjectState(cloud_, state.X_WB, environment_, gravity_W_), contacts);
+      structure_, MakeObjectState(cloud_, state.X_WB, environment_, gravity_W_), contacts,
+      ScoreOutput::kProgress);
   std::vector<double> best(all.data(), all.data() + all.size());
   const auto count = std::min<std::ptrdiff_t>(kBestProbes, std::ssize(best));
   std::partial_sort(best.begin(), best.begin() + count, best.end(), std::greater<>());
   return std::accumulate(best.begin(), best.begin() + count, 0.0) / kBestProbes;
 }
 
-std::unique_ptr<PlacementScorer> LearnedScorer::At(const std::vector<RigidTransform>& X_WB) const {
+std::unique_ptr<PlacementScorer> LearnedScorer::At(const std::vector<RigidTransform>& X_WB,
+                                                   ScoreOutput output) const {
   return std::make_unique<FixedState>(
-      *this, MakeObjectState(cloud_, X_WB, environment_, gravity_W_), X_WB);
+      *this, MakeObjectState(cloud_, X_WB, environment_, gravity_W_), X_WB, output);
 }
 
 std::unique_ptr<PlacementScorer> LearnedScorer::Free() const {
   ObjectState state;
   state.up_O = -(X_WB_start_.front().linear().transpose() * gravity_W_).normalized();
-  return std::make_unique<FixedState>(*this, std::move(state), std::nullopt);
+  return std::make_unique<FixedState>(*this, std::move(state), std::nullopt,
+                                      ScoreOutput::kProgress);
 }
 
 }  // namespace pregrasp

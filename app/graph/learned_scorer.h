@@ -42,9 +42,12 @@ class LearnedScorer : public StateScorer {
   const PointCloud& cloud() const { return cloud_; }
 
   /// The paper's s_c: placements with every body where it is at the start.
-  std::unique_ptr<PlacementScorer> InContext() const { return At(X_WB_start_); }
-  /// The same with every body at `X_WB`, the object first.
-  std::unique_ptr<PlacementScorer> At(const std::vector<RigidTransform>& X_WB) const;
+  std::unique_ptr<PlacementScorer> InContext() const {
+    return At(X_WB_start_, ScoreOutput::kProgress);
+  }
+  /// The same, or the probability of a lifted grasp, with every body at `X_WB`, the object first.
+  std::unique_ptr<PlacementScorer> At(const std::vector<RigidTransform>& X_WB,
+                                      ScoreOutput output) const;
   /// The paper's s_n: the object alone, upright as at the start.
   std::unique_ptr<PlacementScorer> Free() const;
 

@@ -25,7 +25,7 @@ ScoreFunction ScoreFunction::FromTensors(const TensorFile& file) {
   score.encoder_ = SetEncoder::Load(file, "encoder");
   score.contacts_ = ContactFeatureConfig::FromJson(file.metadata_at("contacts"), file.where);
   const std::vector<int> widths = ReadHeadWidths(file, "score");
-  if (widths.back() > 2) throw InputError(file.where, "score", "a head of one output or two", "");
+  score.num_outputs_ = widths.back();
   score.head_ = Head::Load(file, "score", score.encoder_.config().code_size(),
                            ContactFeatureCount(score.contacts_, score.encoder_.config()), widths);
   return score;
@@ -33,7 +33,7 @@ ScoreFunction ScoreFunction::FromTensors(const TensorFile& file) {
 
 void ScoreFunction::ScoreRange(const CloudStructure& structure, const EncodedState& encoded,
                                const std::vector<float>& share, const PlanningContacts* contacts,
-                               int count, double* scores) const {
+                               int count, ScoreOutput output, double* scores) const {
   Rows features, a, b;
   features.Resize(count, head_.others());
   for (int i = 0; i < count; ++i) {
@@ -41,15 +41,16 @@ void ScoreFunction::ScoreRange(const CloudStructure& structure, const EncodedSta
                          features.row(i));
   }
   const Rows& out = head_.Apply(share, features, a, b);
+  const int column = std::min(static_cast<int>(output), num_outputs_ - 1);
   for (int i = 0; i < count; ++i) {
     const bool any = contacts[i][0].has_value() || contacts[i][1].has_value();
-    scores[i] = any ? Sigmoid(out.row(i)[0]) : 0.0;
+    scores[i] = any ? Sigmoid(out.row(i)[column]) : 0.0;
   }
 }
 
 VectorX ScoreFunction::ScoreContacts(const CloudStructure& structure, const ObjectState& state,
                                      const std::vector<PlanningContacts>& contacts,
-                                     ThreadPool& pool) const {
+                                     ScoreOutput output, ThreadPool& pool) const {
   EncodedState encoded;
   encoder_.EncodeChunk(structure, &state, 1, &encoded);
   const std::vector<float> share = head_.CalcCodeShare(encoded.code);
@@ -58,18 +59,19 @@ VectorX ScoreFunction::ScoreContacts(const CloudStructure& structure, const Obje
   pool.ParallelFor((count + kContactsPerTask - 1) / kContactsPerTask, [&](int task, int) {
     const int first = task * kContactsPerTask;
     ScoreRange(structure, encoded, share, &contacts[first],
-               std::min(kContactsPerTask, count - first), scores.data() + first);
+               std::min(kContactsPerTask, count - first), output, scores.data() + first);
   });
   return scores;
 }
 
 VectorX ScoreFunction::ScoreContacts(const CloudStructure& structure, const ObjectState& state,
-                                     const std::vector<PlanningContacts>& contacts) const {
+                                     const std::vector<PlanningContacts>& contacts,
+                                     ScoreOutput output) const {
   EncodedState encoded;
   encoder_.EncodeChunk(structure, &state, 1, &encoded);
   VectorX scores(static_cast<Eigen::Index>(contacts.size()));
   ScoreRange(structure, encoded, head_.CalcCodeShare(encoded.code), contacts.data(),
-             static_cast<int>(contacts.size()), scores.data());
+             static_cast<int>(contacts.size()), output, scores.data());
   return scores;
 }
 
@@ -87,7 +89,7 @@ VectorX ScoreFunction::ScoreStates(const CloudStructure& structure,
     encoder_.EncodeChunk(structure, &states[first], size, encoded.data());
     for (int i = 0; i < size; ++i) {
       ScoreRange(structure, encoded[i], head_.CalcCodeShare(encoded[i].code), &contacts[first + i],
-                 1, scores.data() + first + i);
+                 1, ScoreOutput::kProgress, scores.data() + first + i);
     }
   });
   return scores;

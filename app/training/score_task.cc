@@ -112,14 +112,14 @@ std::vector<ScoreTask::Label> ScoreTask::LabelsOf(const TrainingContext& context
   std::vector<Label> labels;
   if (config_.source == LabelSource::kCompletions) {
     for (const LabelRecord* label : context.labels) {
-      labels.push_back({&label->contacts, {static_cast<float>(label->Value()), 0.0F}});
+      labels.push_back({&label->contacts, {static_cast<float>(label->Value())}});
     }
     return labels;
   }
   for (const TruthRecord* truth : context.truths) {
-    const double progress = config_.progress == ProgressKind::kRelief ? truth->relief : truth->room;
-    labels.push_back(
-        {&truth->contacts, {static_cast<float>(progress), truth->lifted ? 1.0F : 0.0F}});
+    auto progress = static_cast<float>(truth->relief), other = static_cast<float>(truth->room);
+    if (config_.progress == ProgressKind::kRoom) std::swap(progress, other);
+    labels.push_back({&truth->contacts, {progress, truth->lifted ? 1.0F : 0.0F, other}});
   }
   return labels;
 }
@@ -209,8 +209,32 @@ Json ScoreTask::EvaluateSome(const Predictions& all,
   return metrics;
 }
 
-Json ScoreTask::Evaluate() {
-  const Predictions all = Predict(data_.validation);
+Json ScoreTask::Evaluate() { return EvaluateAll(Predict(data_.validation)); }
+
+Json ScoreTask::EvaluateConstant() const {
+  std::array<double, kOutputs> sum{};
+  double count = 0.0;
+  for (const TrainingContext& context : data_.training) {
+    for (const Label& label : LabelsOf(context)) {
+      for (int i = 0; i < num_outputs(); ++i) sum[i] += label.values[i];
+      count += 1.0;
+    }
+  }
+  Predictions all;
+  for (const TrainingContext& context : data_.validation) {
+    for (const Label& label : LabelsOf(context)) {
+      all.truth.push_back(label.values[0]);
+      all.prediction.push_back(sum[0] / count);
+      all.context.push_back(&context);
+      if (num_outputs() == 1) continue;
+      all.lifted.push_back(label.values[1]);
+      all.lifted_prediction.push_back(sum[1] / count);
+    }
+  }
+  return EvaluateAll(all);
+}
+
+Json ScoreTask::EvaluateAll(const Predictions& all) const {
   Json metrics = EvaluateSome(all, [](const TrainingContext&) { return true; });
   std::set<std::string> families;
   for (const TrainingContext* context : all.context) families.insert(context->item->family);

@@ -21,7 +21,9 @@ const char* ScoreVariantName(ScoreVariant variant);
 
 /// Whose labels are learned.
 enum class LabelSource {
-  kSearch,       ///< TruthRecord: progress and lifted, two outputs
+  /// TruthRecord: progress and lifted; and the other candidate for progress, which nobody asks for,
+  /// because what is learned for it helps both.
+  kSearch,
   kCompletions,  ///< LabelRecord: the paper's share of feasible completions, one output
 };
 
@@ -57,6 +59,8 @@ class ScoreTask : public TrainingTask {
   torch::nn::Module& module() override { return *module_; }
   torch::Tensor CalcLoss(std::int64_t step) override;
   nlohmann::ordered_json Evaluate() override;
+  /// The same for the mean of all training labels as the only answer.
+  nlohmann::ordered_json EvaluateConstant() const;
   std::string Describe() const override;
 
   /// The weights as ScoreFunction loads them.
@@ -74,17 +78,19 @@ class ScoreTask : public TrainingTask {
 
  private:
   struct Model;
+  static constexpr int kOutputs = 3;  // progress, lifted, and the other candidate for progress
   // Contacts with what is to be predicted of them.
   struct Label {
     const PlanningContacts* contacts = nullptr;
-    std::array<float, 2> values{};  // by ScoreOutput
+    std::array<float, kOutputs> values{};  // by ScoreOutput, then what is only trained beside
   };
   std::vector<Label> LabelsOf(const TrainingContext& context) const;
-  int num_outputs() const { return config_.source == LabelSource::kSearch ? 2 : 1; }
+  int num_outputs() const { return config_.source == LabelSource::kSearch ? kOutputs : 1; }
   std::vector<int> head_widths() const;
   // #labels x num_outputs().
   torch::Tensor CalcLogits(const std::vector<TrainingState>& states,
                            const std::vector<std::vector<Label>>& labels);
+  nlohmann::ordered_json EvaluateAll(const Predictions& all) const;
   nlohmann::ordered_json EvaluateSome(
       const Predictions& all, const std::function<bool(const TrainingContext&)>& keep) const;
 

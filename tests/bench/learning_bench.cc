@@ -67,8 +67,10 @@ void ScoreGraph(benchmark::State& state) {
   const ObjectState with = MakeStates(1)[0], without;
   ThreadPool pool(static_cast<int>(state.range(0)));
   for (auto _ : state) {
-    benchmark::DoNotOptimize(score.ScoreContacts(structure, with, contacts, pool));
-    benchmark::DoNotOptimize(score.ScoreContacts(structure, without, contacts, pool));
+    benchmark::DoNotOptimize(
+        score.ScoreContacts(structure, with, contacts, ScoreOutput::kProgress, pool));
+    benchmark::DoNotOptimize(
+        score.ScoreContacts(structure, without, contacts, ScoreOutput::kProgress, pool));
   }
 }
 BENCHMARK(ScoreGraph)

@@ -33,6 +33,11 @@ TEST_F(ScoreFunctionTest, ScoresAreBetweenZeroAndOne) {
   EXPECT_GT(scores.maxCoeff() - scores.minCoeff(), 1e-3);
 }
 
+TEST_F(ScoreFunctionTest, OneOutputAnswersBothQuestions) {
+  EXPECT_EQ(score_.ScoreContacts(structure_, states_[0], contacts_, ScoreOutput::kLifted, pool_),
+            score_.ScoreContacts(structure_, states_[0], contacts_, ScoreOutput::kProgress, pool_));
+}
+
 TEST_F(ScoreFunctionTest, WithoutContactTheScoreIsZero) {
   const VectorX scores = score_.ScoreStates(structure_, {states_[0]}, {PlanningContacts{}}, pool_);
   EXPECT_EQ(scores[0], 0.0);
@@ -41,7 +46,9 @@ TEST_F(ScoreFunctionTest, WithoutContactTheScoreIsZero) {
 TEST_F(ScoreFunctionTest, BothWaysOfAskingGiveTheSameBits) {
   const VectorX by_state = score_.ScoreStates(structure_, states_, contacts_, pool_);
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    EXPECT_EQ(score_.ScoreContacts(structure_, states_[i], contacts_, pool_)[i], by_state[i]);
+    EXPECT_EQ(
+        score_.ScoreContacts(structure_, states_[i], contacts_, ScoreOutput::kProgress, pool_)[i],
+        by_state[i]);
   }
 }
 
@@ -52,8 +59,8 @@ TEST_F(ScoreFunctionTest, TheNumberOfThreadsDoesNotMatter) {
     Rng rng(22, RngStream::kTest, i);
     many.push_back(MakeRandomContacts(rng, P_));
   }
-  EXPECT_EQ(score_.ScoreContacts(structure_, states_[0], many, one),
-            score_.ScoreContacts(structure_, states_[0], many, four));
+  EXPECT_EQ(score_.ScoreContacts(structure_, states_[0], many, ScoreOutput::kProgress, one),
+            score_.ScoreContacts(structure_, states_[0], many, ScoreOutput::kProgress, four));
   EXPECT_EQ(score_.ScoreStates(structure_, states_, contacts_, one),
             score_.ScoreStates(structure_, states_, contacts_, four));
 }
@@ -63,7 +70,7 @@ TEST_F(ScoreFunctionTest, EveryInputMatters) {
   contacts[0] = PlanningContact{{0.05, 0.05, 0.0}, {0.0, 1.0, 0.0}, 0.02};
   contacts[1] = PlanningContact{{0.05, -0.05, 0.0}, {0.0, -1.0, 0.0}, 0.02};
   const auto score = [&](const ObjectState& state, const PlanningContacts& c) {
-    return score_.ScoreContacts(structure_, state, {c}, pool_)[0];
+    return score_.ScoreContacts(structure_, state, {c}, ScoreOutput::kProgress, pool_)[0];
   };
   const double base = score(states_[0], contacts);
   std::vector<PlanningContacts> changed(6, contacts);

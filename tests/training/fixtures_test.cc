@@ -44,7 +44,8 @@ TEST_F(FixturesTest, ScoresAreTheTrainers) {
   ForEachContext([&](const DatasetItem& item, const ContextRecord& context,
                      const std::vector<PlanningContacts>& contacts) {
     const CloudStructure structure = score.BuildStructure(item.P_O, context.X_WO.linear());
-    const VectorX scores = score.ScoreContacts(structure, StateOf(context), contacts, pool);
+    const VectorX scores =
+        score.ScoreContacts(structure, StateOf(context), contacts, ScoreOutput::kProgress, pool);
     for (int i = 0; i < scores.size(); ++i) EXPECT_NEAR(scores[i], answers.at(k++), 1e-5);
   });
   EXPECT_EQ(k, answers.size());
