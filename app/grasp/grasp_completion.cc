@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
@@ -30,7 +31,7 @@ class Completion {
  public:
   Completion(const ContactPlaces& places, const CompletionConfig& config,
              std::span<const GeneratedGrasp> generated, const std::vector<GraspContact>& fixed,
-             ThreadPool* pool)
+             std::vector<HandConfiguration> known, ThreadPool* pool)
       : places_(places),
         config_(config),
         refinement_{config.grasp, config.max_refinement, config.forces, config.max_stiffness_tests},
@@ -38,7 +39,8 @@ class Completion {
         fixed_(fixed),
         pool_(pool),
         raw_(generated.size()),
-        refinements_(generated.size()) {
+        refinements_(generated.size()),
+        solved_(std::move(known)) {
     IkConfig& ik = refinement_.grasp.kinematics.ik;
     ik.max_starts = config.refinement_starts;
     ik.warm_starts = std::max(1, config.refinement_starts - 1);
@@ -50,9 +52,8 @@ class Completion {
       if (raw.feasible()) solved_.push_back(raw.kinematics->ik.configuration());
     }
     CompletionResult result;
-    const bool any_held = std::any_of(raw_.begin(), raw_.end(), [](const GraspAttempt& raw) {
-      return raw.kinematics.has_value();
-    });
+    const bool any_held = std::any_of(raw_.begin(), raw_.end(),
+                                      [](const GraspAttempt& raw) { return HasForces(raw); });
     if (!any_held && config_.max_probes > 0) result.hopeless = !AnyProbeHolds(&result.probes);
     if (!result.hopeless) Refine();
     result.grasps.resize(generated_.size());
@@ -79,14 +80,35 @@ class Completion {
   }
 
   void TestRaw(int i) {
-    const std::vector<GraspContact> projected =
-        ProjectSpaced(places_, generated_[i].points, fixed_);
-    refinements_[i] = std::make_unique<GraspRefinement>(places_, refinement_, projected, fixed_,
-                                                        generated_[i].rng);
-    raw_[i] =
-        TryGrasp(places_.world(), config_.grasp, projected, places_.X_WB(), generated_[i].rng);
+    const GeneratedGrasp& generated = generated_[i];
+    std::vector<GraspContact> chosen = Project(generated.points);
+    GraspAttempt raw = Test(i, chosen);
+    int tests = HasForces(raw) ? 1 : 0;
+    for (const GraspPoints& points : generated.further) {
+      if (raw.feasible() || tests >= config_.max_raw_tests) break;
+      const std::vector<GraspContact> contacts = Project(points);
+      if (CalcForceStatus(places_.world(), config_.grasp, contacts,
+                          places_.X_WB().at(0).linear()) != GraspStatus::kFeasible) {
+        continue;
+      }
+      GraspAttempt attempt = Test(i, contacts);
+      if (tests++ > 0 && !attempt.feasible()) continue;
+      chosen = contacts;
+      raw = std::move(attempt);
+    }
+    refinements_[i] =
+        std::make_unique<GraspRefinement>(places_, refinement_, chosen, fixed_, generated.rng);
+    raw_[i] = std::move(raw);
     refinements_[i]->Start(raw_[i]);
   }
+
+  std::vector<GraspContact> Project(const GraspPoints& points) const {
+    return ProjectSpaced(places_, points, fixed_, config_.grasp.may_drop);
+  }
+  GraspAttempt Test(int i, const std::vector<GraspContact>& contacts) const {
+    return TryGrasp(places_.world(), config_.grasp, contacts, places_.X_WB(), generated_[i].rng);
+  }
+  static bool HasForces(const GraspAttempt& attempt) { return attempt.kinematics.has_value(); }
 
   // Whether any of many plausible sets holds: where none does, no completion will.
   bool AnyProbeHolds(int* drawn) const {
@@ -172,6 +194,7 @@ void CompletionConfig::Validate() const {
     throw InputError("", "max_refinement", "a length from 0 to 0.1 m",
                      FormatDouble(max_refinement));
   }
+  RequireCount("max_raw_tests", max_raw_tests, 1);
   RequireCount("max_solves", max_solves, 0);
   RequireCount("refinement_starts", refinement_starts, 1);
   RequireCount("patience", patience, 1);
@@ -196,17 +219,18 @@ CompletedGrasp MakeSearchedGrasp(const GraspResult& found, int number) {
 
 CompletionResult CompleteGrasps(const ContactPlaces& places, const CompletionConfig& config,
                                 std::span<const GeneratedGrasp> generated,
-                                const std::vector<GraspContact>& fixed, ThreadPool& pool) {
+                                const std::vector<GraspContact>& fixed, ThreadPool& pool,
+                                std::vector<HandConfiguration> known) {
   config.Validate();
   if (generated.empty()) return {};
-  return Completion(places, config, generated, fixed, &pool).Run();
+  return Completion(places, config, generated, fixed, std::move(known), &pool).Run();
 }
 
 CompletedGrasp CompleteGrasp(const ContactPlaces& places, const CompletionConfig& config,
                              const GeneratedGrasp& generated,
                              const std::vector<GraspContact>& fixed) {
   config.Validate();
-  return Completion(places, config, {&generated, 1}, fixed, nullptr).Run().grasps.front();
+  return Completion(places, config, {&generated, 1}, fixed, {}, nullptr).Run().grasps.front();
 }
 
 }  // namespace pregrasp

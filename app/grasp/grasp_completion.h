@@ -14,6 +14,8 @@ namespace pregrasp {
 
 struct CompletionConfig {
   GraspConfig grasp;
+  /// Of a sample's draws, those with forces that are put to inverse kinematics at most.
+  int max_raw_tests = 3;
   /// How far a contact may be moved from where its generated point was projected [m], in a straight
   /// line: the far side of a thin plate is near.
   double max_refinement = 0.010;
@@ -61,6 +63,9 @@ CompletedGrasp MakeSearchedGrasp(const GraspResult& found, int number);
 struct GeneratedGrasp {
   GraspPoints points;
   Rng rng;
+  /// Further draws of the same condition. Where the forces of one do not hold once it is projected,
+  /// which is soon seen, the next takes its place: the exact test scores what the network draws.
+  std::vector<GraspPoints> further = {};
 };
 
 struct CompletionResult {
@@ -69,15 +74,20 @@ struct CompletionResult {
   bool hopeless = false;               ///< neither a sample nor any of these sets held
 };
 
-/// Projects generated grasps to the object and tests them; where one is not feasible, or would give
-/// way when it lifts, refines it (GraspRefinement). Samples are refined in rounds, one set of each,
-/// and begin with the hand poses that solved others: the same result for any number of threads
-/// (design, section 4: r_suc with refinement, r_suc_raw without). Contacts of `fixed` are kept as
-/// they are.
+/// Projects generated grasps to the object and tests them: of a sample's draws the first that is
+/// feasible, of at most `max_raw_tests` with forces; else the first with forces, else the first.
+/// Where one is not feasible, or would give way when it lifts, refines it (GraspRefinement).
+/// Samples are refined in rounds, one set of each, and begin with the hand poses that solved
+/// others: the same result for any number of threads (design, section 4: r_suc with refinement,
+/// r_suc_raw without). Contacts of `fixed` are kept as they are.
+/// @param known  hand poses of other grasps in this state, from which inverse kinematics begins
+/// too:
+///               among neighbours a pose without collision is hard to find from nothing.
 /// @throws Interrupted.
 CompletionResult CompleteGrasps(const ContactPlaces& places, const CompletionConfig& config,
                                 std::span<const GeneratedGrasp> generated,
-                                const std::vector<GraspContact>& fixed, ThreadPool& pool);
+                                const std::vector<GraspContact>& fixed, ThreadPool& pool,
+                                std::vector<HandConfiguration> known = {});
 
 /// One alone, on this thread.
 CompletedGrasp CompleteGrasp(const ContactPlaces& places, const CompletionConfig& config,

@@ -122,7 +122,7 @@ std::vector<Tip> PlaceInTurn(const ContactPlaces& places, const std::vector<Tip>
 }
 
 std::vector<Tip> ProjectEach(const ContactPlaces& places, const GraspPoints& generated,
-                             const std::vector<GraspContact>& fixed) {
+                             const std::vector<GraspContact>& fixed, bool may_drop) {
   std::vector<Tip> tips;
   for (int f = 0; f < kNumFingers; ++f) {
     const Finger finger = static_cast<Finger>(f);
@@ -130,8 +130,9 @@ std::vector<Tip> ProjectEach(const ContactPlaces& places, const GraspPoints& gen
       tips.push_back({*given, given->p_OC, given->p_OC, true});
       continue;
     }
-    const Vector3 wish =
-        generated[f].allFinite() ? generated[f] : places.world().object().bounds().center();
+    const bool known = generated[f].allFinite();
+    if (!known && may_drop && IsDroppable(finger)) continue;
+    const Vector3 wish = known ? generated[f] : places.world().object().bounds().center();
     if (const auto contact = places.Project(finger, wish)) {
       tips.push_back({*contact, wish, contact->p_OC, false});
     }
@@ -142,8 +143,8 @@ std::vector<Tip> ProjectEach(const ContactPlaces& places, const GraspPoints& gen
 }  // namespace
 
 std::vector<GraspContact> ProjectSpaced(const ContactPlaces& places, const GraspPoints& generated,
-                                        const std::vector<GraspContact>& fixed) {
-  const std::vector<Tip> projected = ProjectEach(places, generated, fixed);
+                                        const std::vector<GraspContact>& fixed, bool may_drop) {
+  const std::vector<Tip> projected = ProjectEach(places, generated, fixed, may_drop);
   std::vector<Tip> tips = projected;
   if (!PushApart(places, tips)) tips = PlaceInTurn(places, projected);
   std::vector<GraspContact> contacts;

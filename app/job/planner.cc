@@ -191,7 +191,7 @@ ReleaseResult Planner::Release(const ContactGraph& graph, const Certificate& cer
     if (result.stays) break;
     fixed.fingers[static_cast<int>(contact.finger)] = {true, contact.p_OC, contact.nhat_O};
   }
-  const auto scorer = scorer_->At(world_->GetPoses(end));
+  const auto scorer = scorer_->At(world_->GetPoses(end), ScoreOutput::kLifted);
   result.conditions = FindPlacements(graph.mesh(), *shape_, *scorer, fixed, config_.grasp_samples,
                                      config_.placements, Rng(seed_, RngStream::kReleasePlacements));
   return result;
@@ -215,15 +215,19 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   if (search.max_sets > 0 && searched.found.empty()) {
     completion.max_solves = completion.max_probes = 0;
   }
+  std::vector<HandConfiguration> known;
+  for (const GraspResult& found : searched.found) {
+    known.push_back(found.kinematics->ik.configuration());
+  }
   std::vector<GraspRequest> requests;
   for (int sample = 0; sample < config_.grasp_samples; ++sample) {
     requests.push_back({release.conditions[sample % release.conditions.size()],
                         Rng(seed_, RngStream::kGraspLatent, path_rank, sample),
                         Rng(seed_, RngStream::kGraspCompletion, path_rank, sample)});
   }
-  set.grasps =
-      pregrasp::CompleteGrasps(places, completion, GenerateGrasps(X_WB, requests), fixed, pool_)
-          .grasps;
+  set.grasps = pregrasp::CompleteGrasps(places, completion, GenerateGrasps(X_WB, requests), fixed,
+                                        pool_, std::move(known))
+                   .grasps;
   int number = 0;
   for (const GraspResult& found : searched.found) {
     set.grasps.push_back(MakeSearchedGrasp(found, ++number));
@@ -244,9 +248,11 @@ std::vector<GeneratedGrasp> Planner::GenerateGrasps(
     ThrowIfInterrupted();
     const PlanningContacts condition =
         MakePlanningContacts(request.condition, &X_WB, *environment_);
-    const GraspPoints points =
-        generator_->Sample(*generator_structure_, encoded, condition, 1, request.latent).front();
-    grasps.push_back({points, request.completion});
+    std::vector<GraspPoints> draws = generator_->Sample(*generator_structure_, encoded, condition,
+                                                        config_.grasp_draws, request.latent);
+    const GraspPoints first = draws.front();
+    draws.erase(draws.begin());
+    grasps.push_back({first, request.completion, std::move(draws)});
   }
   return grasps;
 }

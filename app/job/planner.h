@@ -43,7 +43,8 @@ struct PlannerConfig {
   CertifyConfig certify;
   PlacementSearchConfig placements;
   CompletionConfig completion;
-  int grasp_samples = 20;  ///< latent samples on a certified trajectory
+  int grasp_samples = 20;  ///< on a certified trajectory
+  int grasp_draws = 24;    ///< of a sample at most: GeneratedGrasp::further
   /// The second source of grasps, after the generator; bounded so that it takes about 0.3 s.
   GraspSearchConfig search = MakeSecondSourceConfig();
   LiftConfig lift;
@@ -111,6 +112,7 @@ class Planner {
   const EnvironmentDistance& environment() const { return *environment_; }
   const SignedDistance& shape() const { return *shape_; }
   const LearnedScorer& scorer() const { return *scorer_; }
+  const GraspRoom& room() const { return *room_; }
   const GraspWorld& grasp_world() const { return *grasp_world_; }
 
   /// The contact mesh as an unscored graph.

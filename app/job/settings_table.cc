@@ -226,8 +226,18 @@ Settings CertifySettings() {
 Settings GraspsSettings() {
   const char* reached = "a contact is reached within 0.0005 m, 60 deg and 0.001 m of overlap";
   return {
-      {"grasps.samples", Whole(1, 500), "latent samples of the generator", FIELD(grasp_samples),
+      {"grasps.samples", Whole(1, 500), "samples of the generator", FIELD(grasp_samples),
        AtMost(20, "r_suc and success are of 20 samples")},
+      {"grasps.draws",
+       Whole(1, 1000),
+       "draws of a sample at most, until one has forces",
+       FIELD(grasp_draws),
+       {}},
+      {"grasps.raw_tests",
+       Whole(1, 1000),
+       "draws of a sample with forces that are put to inverse kinematics at most",
+       FIELD(completion.max_raw_tests),
+       {}},
       {"grasps.points",
        Whole(1, 10000),
        "places a finger that are scored, for what the generator is to complete",

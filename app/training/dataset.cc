@@ -8,6 +8,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/gzip.h"
 #include "app/core/sha256.h"
 #include "app/training/packed_states.h"
 
@@ -87,8 +88,10 @@ void MergeDataset(const std::vector<fs::path>& folders, std::int64_t count, cons
 
 Dataset ReadDataset(const fs::path& folder) {
   if (fs::is_regular_file(folder)) {
-    Dataset dataset = UnpackStates(ReadTensors(folder));
-    dataset.hash = Sha256OfFile(folder);
+    std::string bytes = ReadWholeFile(folder);
+    if (folder.extension() == ".gz") bytes = Inflate(bytes, folder.string());
+    Dataset dataset = UnpackStates(ParseTensors(bytes, folder.string()));
+    dataset.hash = Sha256(bytes);
     return dataset;
   }
   const std::string text = ReadWholeFile(folder / kIndexFile);
@@ -117,6 +120,26 @@ Dataset ReadDataset(const fs::path& folder) {
     }
   }
   return dataset;
+}
+
+Dataset ReadDatasets(const std::vector<fs::path>& folders) {
+  PREGRASP_CHECK(!folders.empty());
+  Dataset all = ReadDataset(folders.front());
+  std::string hashes = all.hash;
+  for (std::size_t i = 1; i < folders.size(); ++i) {
+    Dataset next = ReadDataset(folders[i]);
+    hashes += next.hash;
+    for (DatasetItem& item : next.items) {
+      if (!all.items.empty() && item.P_O.rows() != all.items.front().P_O.rows()) {
+        throw InputError(folders[i].string(), "",
+                         std::to_string(all.items.front().P_O.rows()) + " points an object",
+                         std::to_string(item.P_O.rows()));
+      }
+      all.items.push_back(std::move(item));
+    }
+  }
+  if (folders.size() > 1) all.hash = Sha256(hashes);
+  return all;
 }
 
 }  // namespace pregrasp

@@ -94,13 +94,19 @@ void MergeDataset(const std::vector<std::filesystem::path>& folders, std::int64_
 
 struct Dataset {
   std::string description;
-  /// SHA-256 of index.json, or of the packed file: names the data for the weights' metadata.
+  /// SHA-256 of index.json, or of the packed file before gzip: names the data for the weights'
+  /// metadata.
   std::string hash;
   std::vector<DatasetItem> items;
 };
 
-/// Reads a merged data set, or a file that PackStates made of one. @throws InputError for a missing
+/// Reads a merged data set, or a file that PackStates made of one, which gzip may have packed
+/// further (.gz). @throws InputError for a missing
 /// or altered shard.
 Dataset ReadDataset(const std::filesystem::path& folder);
+
+/// The items of several one after the other; the hash is that of all hashes, or the only one.
+/// @throws InputError also where their clouds differ in size.
+Dataset ReadDatasets(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace pregrasp

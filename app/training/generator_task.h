@@ -9,21 +9,38 @@
 
 namespace pregrasp {
 
+/// How contact points come from noise.
+enum class GeneratorDecoder {
+  kFlow,         ///< a velocity, integrated: flow matching (Lipman et al. 2023)
+  kAutoencoder,  ///< the paper's: one step from a latent sample
+};
+/// "flow", "autoencoder". @throws InputError for another name.
+GeneratorDecoder ParseGeneratorDecoder(const std::string& name);
+const char* GeneratorDecoderName(GeneratorDecoder decoder);
+
 struct GeneratorTaskConfig {
   SetEncoderConfig encoder;
   ContactFeatureConfig contacts;
-  std::vector<int> hidden_widths = {256, 256};  ///< of the three decoders and recognition networks
+  GeneratorDecoder decoder = GeneratorDecoder::kFlow;
+  /// Of the three decoders, and of a variational autoencoder's recognition networks.
+  std::vector<int> hidden_widths = {256, 256, 256};
+  FlowConfig flow;     ///< but for finger_sets, which the data set's grasps decide
+  int flow_times = 2;  ///< drawn for each grasp and step
   int latent_size = 8;
   double kl_weight = 0.05;  ///< of the divergence from the standard normal; at the paper's 0.01
                             ///< half as many completions of held-out objects are feasible
+  /// The same's, of the mean overlap of neighbouring fingertips, so that samples do not collapse
+  /// into one place: contacts nearer to each other than a tip is wide, in the loss's unit.
+  double spacing_weight = 1.0;
   int contexts_per_step = 16;
   int grasps_per_context = 16;
   std::uint64_t seed = 1;
 };
 
-/// The three grasp generators as conditional variational autoencoders (Sohn et al. 2015) on one
-/// shared encoder. Loss: the mean distance of the predicted contacts, in units of 10 cm, over the
-/// fingers that the grasp uses, plus the weighted divergence.
+/// The three grasp generators on one shared encoder. Loss of an autoencoder (Sohn et al. 2015): the
+/// mean distance of the predicted contacts, in units of 10 cm, over the fingers that the grasp
+/// uses, plus the weighted divergence and overlap. Loss of a flow: the mean squared error of the
+/// velocity on straight ways from noise to these contacts.
 class GeneratorTask : public TrainingTask {
  public:
   GeneratorTask(const std::shared_ptr<const Dataset>& dataset,
@@ -32,7 +49,8 @@ class GeneratorTask : public TrainingTask {
 
   torch::nn::Module& module() override { return *module_; }
   torch::Tensor CalcLoss(std::int64_t step) override;
-  /// By generator: the mean error of reconstruction, and of the nearest of 20 samples [mm].
+  /// By generator: the mean error of the nearest of 20 samples, their spread, and of an autoencoder
+  /// the error of reconstruction [mm].
   nlohmann::ordered_json Evaluate() override;
   std::string Describe() const override;
 
@@ -48,6 +66,18 @@ class GeneratorTask : public TrainingTask {
  private:
   struct Model;
   struct Case;
+  torch::Tensor CalcFlowLoss(int which, const torch::Tensor& condition, const Case& sample,
+                             Rng& rng) const;
+  torch::Tensor CalcAutoencoderLoss(int which, const torch::Tensor& condition, const Case& sample,
+                                    Rng& rng) const;
+  // Points of the fingers in `mask` from latent numbers.
+  torch::Tensor DecodeFlow(int which, const torch::Tensor& condition, const torch::Tensor& mask,
+                           const torch::Tensor& noise) const;
+  torch::Tensor DrawPoints(int which, const torch::Tensor& condition, const torch::Tensor& mask,
+                           Rng& rng) const;
+  bool is_flow() const { return config_.decoder == GeneratorDecoder::kFlow; }
+  // The mean, over grasps, of how far predicted tips of neighbouring fingers overlap, summed.
+  torch::Tensor CalcTipOverlap(int which, const torch::Tensor& points, const Case& sample) const;
   std::array<Case, 3> BuildCases(const EncoderBatch& batch,
                                  const std::vector<TrainingState>& states,
                                  const std::vector<std::vector<const GraspRecord*>>& grasps) const;

@@ -25,12 +25,14 @@ constexpr int kBadInput = 2;
 constexpr int kInterrupted = 130;  // as shells have it for SIGINT
 
 struct Options {
-  fs::path data, out = "out/training";
+  std::vector<fs::path> data;
+  fs::path out = "out/training";
   std::vector<std::string> validation;
   TrainingConfig training;
   ScoreTaskConfig score;
   GeneratorTaskConfig generator;
   std::string variant = "full", encoder = "default", source = "search", progress = "relief";
+  std::string study, decoder = "flow";
 };
 
 // Step, loss and time left: one line that renews itself on a terminal, plain lines otherwise.
@@ -78,8 +80,9 @@ void WriteJson(const fs::path& path, const Json& json) {
 }
 
 // Trains `task` into OUT/NAME.safetensors, with OUT/NAME.checkpoint and OUT/NAME.metrics.json.
+// @return the metrics at the end.
 template <typename Task>
-int Train(Task& task, const Options& options, const std::string& name) {
+Json Train(Task& task, const Options& options, const std::string& name) {
   fs::create_directories(options.out);
   TrainingConfig training = options.training;
   training.checkpoint = options.out / (name + ".checkpoint");
@@ -91,7 +94,7 @@ int Train(Task& task, const Options& options, const std::string& name) {
              {"training_contexts", task.data().training.size()},
              {"validation_contexts", task.data().validation.size()},
              {"history", history}});
-  return 0;
+  return history.back().at("metrics");
 }
 
 SetEncoderConfig EncoderNamed(const std::string& name) {
@@ -100,27 +103,57 @@ SetEncoderConfig EncoderNamed(const std::string& name) {
   throw InputError("--encoder", "", "default or paper", name);
 }
 
+// Every variant with kStudySeeds seeds, each into files of its own, and OUT/ablations.json with how
+// each ended. What is there already is not trained again.
+int StudyAblations(const std::shared_ptr<const Dataset>& dataset, Options options) {
+  constexpr int kStudySeeds = 3;
+  Json study{{"dataset", dataset->hash},
+             {"validation", options.validation},
+             {"training", options.training.ToJson()}};
+  for (const ScoreVariant variant : {ScoreVariant::kFull, ScoreVariant::kNoSdf,
+                                     ScoreVariant::kNoShape, ScoreVariant::kFrozenEncoder}) {
+    for (int i = 0; i < kStudySeeds; ++i) {
+      Options one = options;
+      one.training.seed = options.training.seed + i;
+      one.score.seed = one.training.seed;
+      one.score.variant = variant;
+      const std::string name = fmt::format("{}-{}", ScoreVariantName(variant), one.training.seed);
+      ScoreTask task(dataset, one.validation, one.score);
+      study["variants"][ScoreVariantName(variant)].push_back(Train(task, one, name));
+      study["variants"]["constant"] = Json::array({task.EvaluateConstant()});
+    }
+  }
+  WriteJson(options.out / "ablations.json", study);
+  return 0;
+}
+
 int TrainScore(Options options) {
   options.score.encoder = EncoderNamed(options.encoder);
   options.score.variant = ParseScoreVariant(options.variant);
   options.score.source = ParseLabelSource(options.source);
   options.score.progress = ParseProgressKind(options.progress);
   options.score.seed = options.training.seed;
-  ScoreTask task(std::make_shared<Dataset>(ReadDataset(options.data)), options.validation,
-                 options.score);
-  return Train(task, options, "score");
+  const auto dataset = std::make_shared<Dataset>(ReadDatasets(options.data));
+  if (options.study == "ablations") return StudyAblations(dataset, options);
+  if (!options.study.empty()) throw InputError("--study", "", "ablations", options.study);
+  ScoreTask task(dataset, options.validation, options.score);
+  Train(task, options, "score");
+  return 0;
 }
 
 int TrainGenerator(Options options) {
   options.generator.encoder = EncoderNamed(options.encoder);
+  options.generator.decoder = ParseGeneratorDecoder(options.decoder);
   options.generator.seed = options.training.seed;
-  GeneratorTask task(std::make_shared<Dataset>(ReadDataset(options.data)), options.validation,
+  GeneratorTask task(std::make_shared<Dataset>(ReadDatasets(options.data)), options.validation,
                      options.generator);
-  return Train(task, options, "generator");
+  Train(task, options, "generator");
+  return 0;
 }
 
 void AddCommonOptions(CLI::App& command, Options& options) {
-  command.add_option("data", options.data, "Folder of a merged data set")->required();
+  command.add_option("data", options.data, "Folders of merged data sets, or files of packed ones")
+      ->required();
   command.add_option("--out", options.out, "Where weights, metrics and checkpoint go")
       ->capture_default_str();
   command.add_option("--validation", options.validation, "Families held out, comma-separated")
@@ -162,11 +195,21 @@ int Run(int argc, char** argv) {
       ->capture_default_str();
   score->add_option("--progress", options.progress, "What stands for progress: relief or room")
       ->capture_default_str();
+  score->add_option("--study", options.study,
+                    "ablations: every variant with three seeds, and ablations.json");
   score->add_option("--labels", options.score.labels_per_context, "Labels per context and step")
       ->capture_default_str();
   CLI::App* generator = app.add_subcommand("generator", "The three grasp generators");
   AddCommonOptions(*generator, options);
-  generator->add_option("--latent", options.generator.latent_size, "Size of the latent space")
+  generator->add_option("--decoder", options.decoder, "flow, or autoencoder as in the paper")
+      ->capture_default_str();
+  generator
+      ->add_option("--latent", options.generator.latent_size,
+                   "Size of an autoencoder's latent space")
+      ->capture_default_str();
+  generator
+      ->add_option("--spacing", options.generator.spacing_weight,
+                   "Weight of what fingertips overlap by")
       ->capture_default_str();
   generator->add_option("--kl", options.generator.kl_weight, "Weight of the divergence")
       ->capture_default_str();

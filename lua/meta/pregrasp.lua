@@ -594,7 +594,9 @@ local Trajectory = {}
 function Trajectory:grasps(options) end
 
 ---@class GraspsOptions
----@field samples? integer latent samples of the generator, 1 to 500, within the rules at most 20; 20
+---@field samples? integer samples of the generator, 1 to 500, within the rules at most 20; 20
+---@field draws? integer draws of a sample at most, until one has forces, 1 to 1000; 24
+---@field raw_tests? integer draws of a sample with forces that are put to inverse kinematics at most, 1 to 1000; 3
 ---@field points? integer places a finger that are scored, for what the generator is to complete, 1 to 10000; 400
 ---@field pairs? integer placements of both fingers that are scored, 0 to 50000; 4000
 ---@field spacing? number by which the placements of two samples differ somewhere, 0 to 1 m; 0.01

@@ -47,7 +47,7 @@ TEST(SpacedProjectionTest, WhateverThePointsTheFingersGetFiveDifferentPlaces) {
       GraspPoints points;
       for (Vector3& p : points) p = centre + spread * rng.Direction();
       SCOPED_TRACE(scene.name + " " + std::to_string(i));
-      ExpectPlaces(places, ProjectSpaced(places, points, {}));
+      ExpectPlaces(places, ProjectSpaced(places, points, {}, true));
     }
   }
 }
@@ -58,7 +58,7 @@ TEST(SpacedProjectionTest, PointsWithRoomGoToTheNearestSurface) {
   const GraspPoints points = {Vector3(0.0, 0.040, 0.03), Vector3(0.01, -0.030, 0.06),
                               Vector3(0.0, -0.037, 0.03), Vector3(0.0, -0.035, 0.0),
                               Vector3(-0.01, -0.036, -0.03)};
-  const auto contacts = ProjectSpaced(places, points, {});
+  const auto contacts = ProjectSpaced(places, points, {}, true);
   ExpectPlaces(places, contacts);
   for (int f = 0; f < kNumFingers; ++f) {
     const Vector3 expected(points[f].x(), f == 0 ? 0.035 : -0.035, points[f].z());
@@ -72,7 +72,7 @@ TEST(SpacedProjectionTest, TwoTipsThatOverlapPartByHalfEach) {
   GraspPoints points = {Vector3(0.0, 0.035, 0.0), Vector3(0.0, -0.035, 0.05),
                         Vector3(0.0, -0.035, 0.04), Vector3(0.0, -0.035, 0.0),
                         Vector3(0.0, -0.035, -0.04)};
-  const auto contacts = ProjectSpaced(places, points, {});
+  const auto contacts = ProjectSpaced(places, points, {}, true);
   const double half = 0.5 * (0.018 + kTipRoom);
   EXPECT_LT((contacts[1].p_OC - Vector3(0.0, -0.035, 0.045 + half)).norm(), 1e-4);
   EXPECT_LT((contacts[2].p_OC - Vector3(0.0, -0.035, 0.045 - half)).norm(), 1e-4);
@@ -84,7 +84,7 @@ TEST(SpacedProjectionTest, FiveTipsOnOneSpotStayNearIt) {
   const GraspWorld world(FlatScene({0.2, 0.25, 0.003}, 0.03, 0.04), ShadowHand());
   const ContactPlaces places(world, world.StartPoses());
   const Vector3 spot(0.01, -0.03, 0.0015);
-  const auto contacts = ProjectSpaced(places, AllAt(spot), {});
+  const auto contacts = ProjectSpaced(places, AllAt(spot), {}, true);
   ExpectPlaces(places, contacts);
   for (const GraspContact& contact : contacts) EXPECT_LT((contact.p_OC - spot).norm(), 0.036);
 }
@@ -93,7 +93,7 @@ TEST(SpacedProjectionTest, WhatPressesStaysAndTheOthersGiveWay) {
   const GraspWorld world(FreeCartonScene(), ShadowHand());
   const ContactPlaces places(world, world.StartPoses());
   const GraspContact pressing{Finger::kIndex, {0.0, 0.0, 0.1}, Vector3::UnitZ()};
-  const auto contacts = ProjectSpaced(places, AllAt({0.0, 0.0, 0.1}), {pressing});
+  const auto contacts = ProjectSpaced(places, AllAt({0.0, 0.0, 0.1}), {pressing}, true);
   ExpectPlaces(places, contacts);
   EXPECT_EQ(contacts[1].p_OC, pressing.p_OC);
   EXPECT_EQ(contacts[1].nhat_O, pressing.nhat_O);
@@ -106,7 +106,10 @@ TEST(SpacedProjectionTest, PointsThatAreNotFiniteGetPlacesToo) {
   GraspPoints points = AllAt({0.0, 0.05, 0.0});
   points[0] = Vector3(nan, nan, nan);
   points[3] = Vector3(0.0, std::numeric_limits<double>::infinity(), 0.0);
-  ExpectPlaces(places, ProjectSpaced(places, points, {}));
+  ExpectPlaces(places, ProjectSpaced(places, points, {}, false));
+  const auto without_ring = ProjectSpaced(places, points, {}, true);
+  EXPECT_EQ(without_ring.size(), 4U);
+  EXPECT_EQ(FindContact(without_ring, Finger::kRing), nullptr);
 }
 
 TEST(ContactPlacesTest, AreWhereAFingertipTouchesNothingElse) {

@@ -94,6 +94,57 @@ TEST_F(GraspGeneratorTest, GraspsTurnWithTheObjectsFrame) {
   }
 }
 
+class FlowTest : public GraspGeneratorTest {
+ protected:
+  static FlowConfig Config() {
+    FlowConfig config;
+    config.finger_sets = {0.4, 0.3, 0.2, 0.1};
+    return config;
+  }
+  static GraspGenerator Make(const FlowConfig& config) {
+    return GraspGenerator::FromTensors(MakeRandomGenerator(30, 0, &config));
+  }
+};
+
+TEST_F(FlowTest, LeavesOutRingAndLittleAsOftenAsItIsTold) {
+  const GraspGenerator flow = Make(Config());
+  for (const PlanningContacts& given : choices_) {
+    std::array<double, 4> share{};  // all, no little, no ring, neither
+    constexpr int kSamples = 4000;
+    for (const GraspPoints& grasp : flow.Sample(structure_, encoded_, given, kSamples, Rng(1))) {
+      for (int f = 0; f < 3; ++f) EXPECT_TRUE(grasp[f].allFinite());
+      share[(grasp[4].allFinite() ? 0 : 1) + (grasp[3].allFinite() ? 0 : 2)] += 1.0 / kSamples;
+    }
+    for (int set = 0; set < 4; ++set) EXPECT_NEAR(share[set], Config().finger_sets[set], 0.03);
+  }
+}
+
+TEST_F(FlowTest, ASampleDoesNotDependOnTheOthers) {
+  const GraspGenerator flow = Make(Config());
+  ASSERT_EQ(flow.latent_size(), kFlowLatentSize);
+  Rng rng(2);
+  std::vector<float> latent(20 * kFlowLatentSize);
+  for (float& z : latent) z = static_cast<float>(rng.Normal());
+  const auto all = flow.Decode(structure_, encoded_, choices_[1], latent);
+  for (int i = 0; i < 20; ++i) {
+    const auto row = latent.begin() + static_cast<std::ptrdiff_t>(i) * kFlowLatentSize;
+    const auto alone = flow.Decode(structure_, encoded_, choices_[1], {row, row + kFlowLatentSize});
+    for (int f = 0; f < 3; ++f) EXPECT_EQ(alone[0][f], all[i][f]);
+  }
+}
+
+TEST_F(FlowTest, FiguresThatCannotBeAreRefused) {
+  const FlowConfig config = Config();
+  for (const char* text : {"{}", "[]", R"({"steps":0,"noise":0.5,"finger_sets":[1,0,0,0]})",
+                           R"({"steps":10,"noise":-1,"finger_sets":[1,0,0,0]})",
+                           R"({"steps":10,"noise":0.5,"finger_sets":[1,1,0,0]})",
+                           R"({"steps":10,"noise":0.5,"finger_sets":[1,0]})"}) {
+    TensorFile file = MakeRandomGenerator(1, 0, &config);
+    file.metadata["flow"] = text;
+    EXPECT_THROW(GraspGenerator::FromTensors(file), InputError) << text;
+  }
+}
+
 TEST_F(GraspGeneratorTest, OtherFilesAreRefused) {
   EXPECT_THROW(GraspGenerator::FromTensors(MakeRandomScore(1)), InputError);
   TensorFile file = MakeRandomGenerator(1);

@@ -56,7 +56,9 @@ inline TensorFile MakeRandomScore(std::uint64_t seed, const SetEncoderConfig& co
   return file;
 }
 
-inline TensorFile MakeRandomGenerator(std::uint64_t seed, int latent = 8) {
+/// An autoencoder's decoders; flows if `flow` is given.
+inline TensorFile MakeRandomGenerator(std::uint64_t seed, int latent = 8,
+                                      const FlowConfig* flow = nullptr) {
   TensorFile file;
   file.where = "random generator";
   Rng rng(seed);
@@ -64,13 +66,18 @@ inline TensorFile MakeRandomGenerator(std::uint64_t seed, int latent = 8) {
   AddRandomEncoder(file, rng, config);
   const ContactFeatureConfig contacts;
   file.metadata["contacts"] = contacts.ToJson();
-  file.metadata["latent_size"] = std::to_string(latent);
+  if (flow != nullptr) {
+    file.metadata["flow"] = flow->ToJson();
+  } else {
+    file.metadata["latent_size"] = std::to_string(latent);
+  }
   for (int which = 0; which < 3; ++which) {
     const std::string name = kGeneratorNames[which];
     const int outputs = 3 * static_cast<int>(PredictedFingers(which).size());
     file.metadata[name] = "[256,256," + std::to_string(outputs) + "]";
+    const int taken = flow != nullptr ? FlowInputCount(outputs / 3) : latent;
     AddRandomLayers(file, rng, name,
-                    config.code_size() + ContactFeatureCount(contacts, config) + latent,
+                    config.code_size() + ContactFeatureCount(contacts, config) + taken,
                     {256, 256, outputs});
   }
   return file;

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/core/error.h"
+#include "app/core/gzip.h"
 #include "tests/training/toy_dataset.h"
 
 namespace pregrasp {
@@ -89,6 +90,21 @@ TEST(PackedStatesTest, DamageIsSaid) {
   other = file;
   other.tensors.erase("truth.bits");
   EXPECT_THROW(UnpackStates(other), InputError);
+}
+
+TEST(PackedStatesTest, GzipChangesNeitherContentNorHash) {
+  const std::filesystem::path plain =
+      std::filesystem::path(testing::TempDir()) / "states.safetensors";
+  const std::filesystem::path packed = plain.string() + ".gz";
+  const std::string bytes = SerializeTensors(PackStates(MakeToyDataset(3, 4, 64)));
+  WriteWholeFile(plain, bytes);
+  WriteWholeFile(packed, Deflate(bytes));
+  const Dataset a = ReadDataset(plain), b = ReadDataset(packed);
+  EXPECT_EQ(a.hash, b.hash);
+  EXPECT_EQ(a.items.size(), b.items.size());
+  const Dataset both = ReadDatasets({plain, packed});
+  EXPECT_EQ(both.items.size(), 2 * a.items.size());
+  EXPECT_NE(both.hash, a.hash);
 }
 
 }  // namespace

@@ -112,7 +112,8 @@ TEST_F(TrainerTest, ExportedScoresAreThoseOfTheTrainer) {
                       context.context->X_WO.linear().row(2).transpose()};
     std::vector<PlanningContacts> contacts;
     for (const LabelRecord* label : context.labels) contacts.push_back(label->contacts);
-    const VectorX scores = score.ScoreContacts(structure, state, contacts, pool);
+    const VectorX scores =
+        score.ScoreContacts(structure, state, contacts, ScoreOutput::kProgress, pool);
     for (int i = 0; i < scores.size(); ++i) EXPECT_NEAR(scores[i], expected.prediction[k++], 1e-5);
   }
   EXPECT_EQ(k, expected.prediction.size());
@@ -186,13 +187,18 @@ TEST_F(TrainerTest, AblationsHideWhatTheySay) {
   EXPECT_THROW(ParseScoreVariant("none"), InputError);
 }
 
-TEST_F(TrainerTest, GeneratorsTrainResumeAndExport) {
+class GeneratorTrainerTest : public TrainerTest,
+                             public testing::WithParamInterface<GeneratorDecoder> {};
+
+TEST_P(GeneratorTrainerTest, GeneratorsTrainResumeAndExport) {
+  generator_.decoder = GetParam();
   GeneratorTask task(dataset_, {"family3"}, generator_);
   training_.steps = 60;
   const auto history = RunTraining(task, training_, Ignore);
   EXPECT_LT(history.back()["loss"].get<double>(), history.front()["loss"].get<double>());
   const GraspGenerator generator = GraspGenerator::FromTensors(task.Export());
-  EXPECT_EQ(generator.latent_size(), 4);
+  const bool flow = GetParam() == GeneratorDecoder::kFlow;
+  EXPECT_EQ(generator.latent_size(), flow ? kFlowLatentSize : 4);
 
   const TrainingContext& context = task.data().validation.front();
   const CloudStructure structure =
@@ -205,17 +211,24 @@ TEST_F(TrainerTest, GeneratorsTrainResumeAndExport) {
     PlanningContacts given;
     if (which != 1) given[0] = PlanningContact{context.item->P_O.row(0), {1.0, 0.0, 0.0}, 0.01};
     if (which != 0) given[1] = PlanningContact{context.item->P_O.row(1), {0.0, 1.0, 0.0}, 0.02};
-    const std::vector<float> latent = {0.5F, -1.0F, 0.1F, 1.5F, 0.0F, 0.3F, -0.2F, -2.0F};
+    std::vector<float> latent(2 * generator.latent_size());
+    for (std::size_t i = 0; i < latent.size(); ++i) latent[i] = std::sin(7.0F * i);
     const auto ours = generator.Decode(structure, encoded, given, latent);
     const auto theirs = task.Decode(context, given, latent);
     ASSERT_EQ(ours.size(), 2U);
     for (int i = 0; i < 2; ++i) {
       for (int f = 0; f < kNumFingers; ++f) {
+        ASSERT_EQ(ours[i][f].allFinite(), theirs[i][f].allFinite());
+        if (!ours[i][f].allFinite()) continue;
         EXPECT_LT((ours[i][f] - theirs[i][f]).norm(), 1e-6);  // 1e-5 of the network's unit
       }
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Decoders, GeneratorTrainerTest,
+                         testing::Values(GeneratorDecoder::kFlow, GeneratorDecoder::kAutoencoder),
+                         [](const auto& info) { return GeneratorDecoderName(info.param); });
 
 }  // namespace
 }  // namespace pregrasp

@@ -29,6 +29,7 @@ void WriteFixtures(const std::filesystem::path& folder) {
   GeneratorTaskConfig generator;
   generator.encoder = MakeToyEncoder();
   generator.hidden_widths = {32};
+  generator.decoder = GeneratorDecoder::kAutoencoder;
   generator.latent_size = 4;
   GeneratorTask generator_task(dataset, kHeldOut, generator);
   RunTraining(generator_task, training, [](const TrainingProgress&) {});
