@@ -11,6 +11,7 @@
 #include "app/commands/progress.h"
 #include "app/core/data_folder.h"
 #include "app/core/error.h"
+#include "app/core/gzip.h"
 #include "app/training/dataset_run.h"
 #include "app/training/evaluation_scenes.h"
 #include "app/training/packed_states.h"
@@ -133,10 +134,17 @@ void AddPack(const Subcommand& dataset, Action& action) {
   const Subcommand command = dataset.AddCommand(
       "pack", "Put states and their labels into one small file, which pregrasp-train reads too");
   command.Add("DATA", options->data, "Folder of a merged data set").Required();
-  command.Add("--out", options->out, "File to write").Required();
+  command
+      .Add("--out", options->out, "File to write; packed further by gzip if its name ends in .gz")
+      .Required();
   command.OnChosen([options, &action] {
     action = [options] {
-      WriteTensors(options->out, PackStates(ReadDataset(options->data)));
+      const TensorFile states = PackStates(ReadDataset(options->data));
+      if (options->out.extension() == ".gz") {
+        WriteWholeFile(options->out, Deflate(SerializeTensors(states)));
+      } else {
+        WriteTensors(options->out, states);
+      }
       return 0;
     };
   });
@@ -182,7 +190,6 @@ void AddDataset(const Subcommand& app, Action& action) {
   AddMerge(dataset, action);
   AddPack(dataset, action);
   AddDatasetPictures(dataset, action);
-  AddDatasetProbe(dataset, action);
 }
 
 }  // namespace pregrasp

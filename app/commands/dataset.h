@@ -23,6 +23,5 @@ struct ItemOptions {
 
 // Subcommands of it.
 void AddDatasetPictures(const Subcommand& dataset, Action& action);
-void AddDatasetProbe(const Subcommand& dataset, Action& action);
 
 }  // namespace pregrasp

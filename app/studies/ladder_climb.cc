@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "app/core/interrupt.h"
 #include "app/geometry/mesh_distance.h"
 #include "app/geometry/overlap.h"
+#include "app/grasp/grasp_room.h"
 #include "app/job/job.h"
 #include "app/studies/holding_press.h"
 #include "app/studies/ladder_oracle.h"
@@ -67,11 +69,7 @@ class Climb {
     const ReleaseResult release = planner_->Release(graph_, end);
     facts.stays_when_released = release.stays;
     const std::vector<RigidTransform> X_WB = job_.world().GetPoses(held.state);
-    const std::vector<double> scores = planner_->scorer().At(X_WB)->Score(release.conditions);
-    if (!scores.empty()) {
-      facts.score =
-          std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
-    }
+    AskNetworks(held.state, release, X_WB, facts);
     const GraspSet grasps = planner_->CompleteGrasps(end, release, facts.pose);
     facts.generated = grasps.count(GraspSource::kGenerator);
     facts.generated_feasible = grasps.count_feasible(GraspSource::kGenerator);
@@ -81,6 +79,22 @@ class Climb {
     Search(release, X_WB, facts);
     if (held.holds) CountLifts(end, grasps, facts.lift_tried.emplace(), facts.lifted.emplace());
     return facts;
+  }
+
+  void AskNetworks(const WorldState& state, const ReleaseResult& release,
+                   const std::vector<RigidTransform>& X_WB, PoseFacts& facts) const {
+    const auto mean = [&](ScoreOutput output) {
+      const auto scores = planner_->scorer().At(X_WB, output)->Score(release.conditions);
+      return std::accumulate(scores.begin(), scores.end(), 0.0) /
+             std::max<double>(1.0, static_cast<double>(scores.size()));
+    };
+    facts.score = mean(ScoreOutput::kProgress);
+    facts.probability = mean(ScoreOutput::kLifted);
+    PlanOutcome outcome;
+    outcome.end = state;
+    const ScoredState end = EndToScore(job_.world(), outcome);
+    facts.final_score = planner_->scorer().ScoreGraspable(std::span(&end, 1)).front();
+    facts.room = planner_->room().Calc(X_WB, KeptContacts(end));
   }
 
   void Search(const ReleaseResult& release, const std::vector<RigidTransform>& X_WB,

@@ -17,7 +17,10 @@ struct PoseFacts {
   bool holds = false;                       ///< a press of the finger keeps the object there
   double hold_shift_mm = 0.0, hold_turn_deg = 0.0;
   bool stays_when_released = false;
-  double score = 0.0;  ///< mean learned score of the placements that grasps are completed from
+  double final_score = 0.0;  ///< the learned part of what a plan's end is worth (ScoreGraspable)
+  double room = 0.0;         ///< the other part (GraspRoom)
+  /// Of the placements that grasps are completed from: the mean score, and the mean probability.
+  double score = 0.0, probability = 0.0;
   int generated = 0, generated_feasible = 0, generated_raw = 0;
   int sets = 0, sets_hold = 0;  ///< of a search: plausible ones drawn, and those that hold
   int solved = 0, sets_reach = 0, found = 0;  ///< put to inverse kinematics, within reach, feasible
@@ -33,7 +36,10 @@ struct PoseFacts {
     visit("hold_shift_mm", self.hold_shift_mm);
     visit("hold_turn_deg", self.hold_turn_deg);
     visit("stays_when_released", self.stays_when_released);
+    visit("final_score", self.final_score);
+    visit("room", self.room);
     visit("score", self.score);
+    visit("probability", self.probability);
     visit("generated", self.generated);
     visit("generated_feasible", self.generated_feasible);
     visit("generated_raw", self.generated_raw);

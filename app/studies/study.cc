@@ -7,9 +7,10 @@ namespace pregrasp {
 // Each in the file of its name.
 StudyInfo Table1Study();
 StudyInfo LadderStudy();
+StudyInfo LearningStudy();
 
 const std::vector<StudyInfo>& Studies() {
-  static const std::vector<StudyInfo> studies = {Table1Study(), LadderStudy()};
+  static const std::vector<StudyInfo> studies = {Table1Study(), LadderStudy(), LearningStudy()};
   return studies;
 }
 

@@ -259,7 +259,9 @@ std::string MarkdownText(const std::vector<Row>& rows) {
   }
   return "Means (standard deviations) are over the runs that are ok, seconds and rollouts over "
          "all. "
-         "r_suc is the\nshare of the generated grasps that are feasible, raw without refinement; "
+         "r_suc is the\nshare of the generated grasps that are feasible, each the first of up to "
+         "grasps.draws draws "
+         "whose\nforces hold, raw without refinement; "
          "r_lift that are lifted too. N_paths\ncounts full optimisations until success. The "
          "strategy is the fingers of the last stage, and how far (medians) the\nobject moved and "
          "turned until it was grasped. The paper's columns are its table of all tasks, three runs "

@@ -1,0 +1,195 @@
+// The networks on what they never saw: the score on labels of families held out and on the ladders'
+// poses, the generators on new objects of these families, and what the score costs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "app/core/data_folder.h"
+#include "app/core/json_text.h"
+#include "app/studies/learning_trials.h"
+#include "app/studies/table_text.h"
+#include "app/training/metrics.h"
+
+namespace pregrasp {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kObjects = 3;  // of each family held out and seed
+constexpr std::array<const char*, 3> kCases{"thumb", "index", "both"};
+
+// Items: the labels, the score's speed, objects by family, number and seed, ladders by seed.
+class LearningItems : public Study {
+ public:
+  explicit LearningItems(const StudySetup& setup)
+      : setup_(setup), families_(ReadHeldOutFamilies(setup.weights)) {}
+
+  std::int64_t num_items() const override {
+    return 2 + (num_objects() + std::ssize(setup_.ladders)) * setup_.seeds;
+  }
+
+  Json MakeItem(std::int64_t index) const override {
+    const auto record = [](const char* kind, Json facts) {
+      Json item{{"kind", kind}};
+      item.update(facts);
+      return item;
+    };
+    if (index == 0) {
+      const auto labels = DataFolder() / "assets" / "training" / "states.safetensors.gz";
+      return record("score", JudgeScore(labels, setup_.weights));
+    }
+    if (index == 1) return record("speed", {{"seconds", TimeScore(setup_.weights)}});
+    index -= 2;
+    const std::uint64_t seed = setup_.first_seed + static_cast<std::uint64_t>(index % setup_.seeds);
+    index /= setup_.seeds;
+    if (index < num_objects()) {
+      ThreadPool pool(setup_.threads);
+      return record("object", TryGenerator(families_[index / kObjects], index % kObjects, seed,
+                                           setup_.weights, pool));
+    }
+    return record("ladder", ProbeLadder(setup_.ladders[index - num_objects()], seed, setup_));
+  }
+
+ private:
+  std::int64_t num_objects() const { return kObjects * std::ssize(families_); }
+
+  StudySetup setup_;
+  std::vector<std::string> families_;
+};
+
+// Of the objects' items: the share of samples of these cases for which `key` counts.
+double CalcShare(const std::vector<nlohmann::json>& items, const char* source,
+                 std::initializer_list<const char*> cases, const char* key) {
+  double samples = 0.0, counted = 0.0;
+  for (const nlohmann::json& item : items) {
+    if (item.at("kind") != "object") continue;
+    for (const char* one : cases) {
+      samples += item.at(source).at(one).at("samples").get<double>();
+      counted += item.at(source).at(one).at(key).get<double>();
+    }
+  }
+  return samples > 0.0 ? counted / samples : 0.0;
+}
+
+// How the score of the best placements goes along a ladder with what searches say of them: rank
+// correlations over the poses, of all seeds together; null with fewer than four poses.
+Json CalcLadder(const std::vector<nlohmann::json>& items, const std::string& ladder) {
+  Json result;
+  std::vector<double> all_scores, all_truths;
+  for (const char* one : kCases) {
+    std::vector<double> scores, truths;
+    for (const nlohmann::json& item : items) {
+      if (item.at("kind") != "ladder" || item.at("ladder") != ladder) continue;
+      for (const nlohmann::json& pose : item.at("poses")) {
+        if (pose.at(one).is_null()) continue;
+        scores.push_back(pose.at(one).at("score"));
+        truths.push_back(pose.at(one).at("relief"));
+      }
+    }
+    result[one] = scores.size() < 4 ? Json() : Json(CalcRankCorrelation(scores, truths));
+    all_scores.insert(all_scores.end(), scores.begin(), scores.end());
+    all_truths.insert(all_truths.end(), truths.begin(), truths.end());
+  }
+  result["all"] = CalcRankCorrelation(all_scores, all_truths);
+  return result;
+}
+
+std::string NumberText(const Json& value) {
+  return value.is_null() ? "-" : fmt::format("{:.2f}", value.get<double>());
+}
+
+StudyFiles Tabulate(const std::vector<nlohmann::json>& items) {
+  const nlohmann::json& score = items.at(0);
+  Json summary{{"score_r2", score.at("all").at("r2")},
+               {"score_rank", score.at("all").at("rank")},
+               {"score_auc", score.at("all").at("auc")},
+               {"calibration", score.at("all").at("calibration")}};
+  // As the planner asks for samples, of single draws, and of random points; refined and not.
+  for (const char* source : {"generator", "single_draw", "random"}) {
+    for (const auto& [suffix, key] : {std::pair("", "feasible"), std::pair("_raw", "raw")}) {
+      summary[fmt::format("{}_both{}", source, suffix)] = CalcShare(items, source, {"both"}, key);
+      summary[fmt::format("{}_single{}", source, suffix)] =
+          CalcShare(items, source, {"thumb", "index"}, key);
+    }
+  }
+  summary["generator_overlapping"] =
+      CalcShare(items, "generator", {"thumb", "index", "both"}, "overlapping");
+  summary["ms_128x3"] = 1e3 * items.at(1).at("seconds").get<double>();
+  std::vector<std::vector<std::string>> families = {
+      {"family", "labels", "R2", "rank", "AUC", "calibration"}};
+  const auto add_family = [&](const std::string& name, const nlohmann::json& facts) {
+    families.push_back({name, std::to_string(facts.at("labels").get<int>()),
+                        NumberText(facts.at("r2")), NumberText(facts.at("rank")),
+                        NumberText(facts.at("auc")), NumberText(facts.at("calibration"))});
+  };
+  for (const auto& [family, facts] : score.at("families").items()) {
+    add_family(family, facts);
+    summary["families"][family] = facts;
+  }
+  for (const char* part : {"held", "not_held", "all"}) add_family(part, score.at(part));
+
+  std::vector<std::vector<std::string>> ladders = {{"ladder", "thumb", "index", "both", "all"}};
+  std::vector<std::vector<std::string>> poses = {
+      {"ladder", "seed", "pose", "held", "case", "score", "truth", "probability", "lifted"}};
+  for (const nlohmann::json& item : items) {
+    if (item.at("kind") != "ladder") continue;
+    const std::string name = item.at("ladder");
+    if (!summary["ladders"].contains(name)) {
+      const Json facts = CalcLadder(items, name);
+      summary["ladders"][name] = facts;
+      ladders.push_back({name, NumberText(facts["thumb"]), NumberText(facts["index"]),
+                         NumberText(facts["both"]), NumberText(facts["all"])});
+    }
+    int number = 0;
+    for (const nlohmann::json& pose : item.at("poses")) {
+      ++number;
+      for (const char* one : kCases) {
+        const nlohmann::json& best = pose.at(one);
+        if (best.is_null()) continue;
+        poses.push_back({name, std::to_string(item.at("seed").get<std::uint64_t>()),
+                         std::to_string(number), pose.at("held").get<bool>() ? "yes" : "no", one,
+                         NumberText(best.at("score")), NumberText(best.at("relief")),
+                         NumberText(best.at("probability")), NumberText(best.at("lifted"))});
+      }
+    }
+  }
+  return {{"learning.json", FormatJsonIndented(summary)},
+          {"learning.md",
+           fmt::format(
+               "The score on labels of families that it never saw:\n\n{}\nRank correlation, along "
+               "each ladder, of the score of the tenth of placements that scores best\nwith the "
+               "truth of these (the share of reliefs at which a search has a grasp with "
+               "them):\n\n{}\nPose by pose:\n\n{}",
+               MarkdownTable(families), MarkdownTable(ladders), MarkdownTable(poses))}};
+}
+
+std::string DescribeItem(const nlohmann::json& item) {
+  const std::string kind = item.at("kind");
+  if (kind == "score") {
+    return fmt::format("score: R2 {:.3f}, AUC {:.3f}", item.at("all").at("r2").get<double>(),
+                       item.at("all").at("auc").get<double>());
+  }
+  if (kind == "speed") {
+    return fmt::format("speed: {:.1f} ms", 1e3 * item.at("seconds").get<double>());
+  }
+  if (kind == "object") return fmt::format("object {}", item.at("object").get<std::string>());
+  return fmt::format("ladder {}: {} poses", item.at("ladder").get<std::string>(),
+                     item.at("poses").size());
+}
+
+}  // namespace
+
+StudyInfo LearningStudy() {
+  return {"learning",
+          "the networks on labels, objects and ladders they were not trained on",
+          true,
+          [](const StudySetup& setup) -> std::unique_ptr<Study> {
+            return std::make_unique<LearningItems>(setup);
+          },
+          DescribeItem,
+          Tabulate};
+}
+
+}  // namespace pregrasp

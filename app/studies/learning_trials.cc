@@ -1,0 +1,352 @@
+#include "app/studies/learning_trials.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "app/core/error.h"
+#include "app/core/interrupt.h"
+#include "app/geometry/point_cloud.h"
+#include "app/graph/learned_scorer.h"
+#include "app/grasp/grasp_completion.h"
+#include "app/grasp/grasp_search.h"
+#include "app/job/job.h"
+#include "app/networks/score_function.h"
+#include "app/studies/holding_press.h"
+#include "app/training/make_item.h"
+#include "app/training/metrics.h"
+#include "app/training/search_labels.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kCases = 3;  // thumb, index, both: GeneratorOf's order
+constexpr int kGraspsOfObject = 6, kSamplesOfCondition = 4;
+constexpr int kDraws = 24;            // of a sample, as PlannerConfig::grasp_draws
+constexpr int kContactsOfPose = 200;  // of each case
+constexpr int kPartsOfGrasp = 1000;   // streams
+constexpr double kHandSpan = 0.13;    // between contacts of one hand [m]
+
+// Of objects that no data set's items are.
+constexpr std::uint64_t kItemSeed = 0x6c6561726e;
+
+Json TrainingOf(const TensorFile& weights) { return Json::parse(weights.metadata_at("training")); }
+
+// A context's object in the networks' eyes.
+ObjectState SeenIn(const ContextRecord& context) {
+  return {context.phi, context.occluded, context.X_WO.linear().row(2).transpose()};
+}
+
+// Labels beside the score's answers.
+struct Judged {
+  std::vector<double> progress, score, lifted, probability;
+
+  void Add(double truth, double s, bool is_lifted, double p) {
+    progress.push_back(truth);
+    score.push_back(s);
+    lifted.push_back(is_lifted ? 1.0 : 0.0);
+    probability.push_back(p);
+  }
+  Json ToJson() const {
+    return {{"labels", progress.size()},
+            {"r2", CalcR2(progress, score)},
+            {"rank", CalcRankCorrelation(progress, score)},
+            {"auc", CalcAuc(lifted, probability)},
+            {"calibration", CalcCalibrationError(lifted, probability)}};
+  }
+};
+
+// An object with nothing around it, turned at random as in training.
+struct FreeObject {
+  FreeObject(const std::string& family, std::int64_t number, std::uint64_t seed) {
+    const std::vector<std::string>& families = ObjectFamilies();
+    const auto at = std::find(families.begin(), families.end(), family) - families.begin();
+    index = at + number * std::ssize(families);
+    ItemConfig config;
+    config.seed = kItemSeed + seed;
+    const SceneObject object = MakeItemObject(config, index);
+    name = object.object.name;
+    cloud = MakeItemCloud(config, object, index);
+    int tries = 0;
+    do {
+      scene = MakeItemScene(config, object, index, tries++).scene;
+    } while (scene.bodies.size() > 1);
+  }
+  std::int64_t index = 0;  // of its item
+  std::string name;
+  PointCloud cloud;
+  Scene scene;
+};
+
+Placement ToPlacement(const std::vector<GraspContact>& contacts, int which) {
+  Placement placement;
+  for (int f = 0; f < kNumPlanningFingers; ++f) {
+    if (which != 2 && which != f) continue;
+    const GraspContact* contact = FindContact(contacts, static_cast<Finger>(f));
+    if (contact) placement.fingers[f] = {true, contact->p_OC, contact->nhat_O};
+  }
+  return placement;
+}
+
+// What became of samples.
+struct Tally {
+  int samples = 0, raw = 0, feasible = 0, overlapping = 0;
+
+  void Add(const CompletedGrasp& grasp) {
+    ++samples;
+    raw += grasp.raw.feasible();
+    feasible += grasp.feasible();
+    const std::vector<GraspContact>& tips = grasp.projected;
+    bool overlap = false;
+    for (std::size_t i = 0; i < tips.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) overlap = overlap || CalcTipGap(tips[i], tips[j]) < 0.0;
+    }
+    overlapping += overlap;
+  }
+  Json ToJson() const {
+    return {
+        {"samples", samples}, {"feasible", feasible}, {"raw", raw}, {"overlapping", overlapping}};
+  }
+};
+
+// The given contacts, and for the other fingers any points of the surface that a hand's span from
+// the anchor holds.
+GraspPoints DrawPoints(const PlanningContacts& given, const MatrixX3& surface, Rng& rng) {
+  constexpr int kDraws = 100;
+  GraspPoints points;
+  const Vector3 anchor = CalcAnchor(given);
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (f < kNumPlanningFingers && given[f]) {
+      points[f] = given[f]->p_OC;
+      continue;
+    }
+    for (int draw = 0; draw < kDraws; ++draw) {
+      points[f] = surface.row(rng.UniformInt(static_cast<std::uint32_t>(surface.rows())));
+      if ((points[f] - anchor).norm() < kHandSpan) break;
+    }
+  }
+  return points;
+}
+
+// The tenth of a pose's labels of one case that has the best scores, on the average.
+Json FindBestTenth(const std::vector<TruthRecord>& truths, const VectorX& progress,
+                   const VectorX& lifted, int which) {
+  std::vector<int> order;
+  for (int i = 0; i < static_cast<int>(truths.size()); ++i) {
+    if (GeneratorOf(truths[i].contacts) == which) order.push_back(i);
+  }
+  if (order.size() < 10) return nullptr;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return progress[a] > progress[b]; });
+  Json best{{"contacts", order.size()}};
+  double all = 0.0;
+  for (const int i : order) all += truths[i].relief / static_cast<double>(order.size());
+  order.resize((order.size() + 9) / 10);
+  const auto mean = [&](const auto& value) {
+    double sum = 0.0;
+    for (const int i : order) sum += value(i);
+    return sum / static_cast<double>(order.size());
+  };
+  best["score"] = mean([&](int i) { return progress[i]; });
+  best["relief"] = mean([&](int i) { return truths[i].relief; });
+  best["room"] = mean([&](int i) { return truths[i].room; });
+  best["probability"] = mean([&](int i) { return lifted[i]; });
+  best["lifted"] = mean([&](int i) { return truths[i].lifted ? 1.0 : 0.0; });
+  best["relief_of_all"] = all;
+  return best;
+}
+
+}  // namespace
+
+std::vector<std::string> ReadHeldOutFamilies(const fs::path& weights) {
+  const fs::path file = weights / "score.safetensors";
+  const Json training = TrainingOf(ReadTensors(file));
+  if (!training.contains("validation") || training["validation"].empty()) {
+    throw InputError(file.string(), "training", "families that were held out", "none");
+  }
+  return training["validation"].get<std::vector<std::string>>();
+}
+
+Json JudgeScore(const fs::path& labels, const fs::path& weights) {
+  const TensorFile file = ReadTensors(weights / "score.safetensors");
+  const ScoreFunction score = ScoreFunction::FromTensors(file);
+  const bool by_room = TrainingOf(file).value("progress", "relief") == "room";
+  const Dataset dataset = ReadDataset(labels);
+  Judged all, held, not_held;
+  Json families;
+  for (const std::string& family : ReadHeldOutFamilies(weights)) {
+    Judged own;
+    for (const DatasetItem& item : dataset.items) {
+      if (item.family != family) continue;
+      ThrowIfInterrupted();
+      for (int c = 0; c < static_cast<int>(item.contexts.size()); ++c) {
+        const ContextRecord& context = item.contexts[c];
+        std::vector<const TruthRecord*> truths;
+        std::vector<PlanningContacts> contacts;
+        for (const TruthRecord& truth : item.truths) {
+          if (truth.context != c) continue;
+          truths.push_back(&truth);
+          contacts.push_back(truth.contacts);
+        }
+        const CloudStructure structure = score.BuildStructure(item.P_O, context.X_WO.linear());
+        const ObjectState state = SeenIn(context);
+        const VectorX s = score.ScoreContacts(structure, state, contacts, ScoreOutput::kProgress);
+        const VectorX p = score.ScoreContacts(structure, state, contacts, ScoreOutput::kLifted);
+        const bool pressed = context.kind.find("held") != std::string::npos;
+        for (std::size_t i = 0; i < truths.size(); ++i) {
+          const double progress = by_room ? truths[i]->room : truths[i]->relief;
+          for (Judged* judged : {&own, &all, pressed ? &held : &not_held}) {
+            judged->Add(progress, s[static_cast<Eigen::Index>(i)], truths[i]->lifted,
+                        p[static_cast<Eigen::Index>(i)]);
+          }
+        }
+      }
+    }
+    families[family] = own.ToJson();
+  }
+  return {{"labels", dataset.hash},        {"progress", by_room ? "room" : "relief"},
+          {"all", all.ToJson()},           {"held", held.ToJson()},
+          {"not_held", not_held.ToJson()}, {"families", families}};
+}
+
+Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t seed,
+                  const fs::path& weights, ThreadPool& pool) {
+  const FreeObject object(family, number, seed);
+  const GraspWorld world = MakeTrainingWorld(object.scene);
+  const std::vector<RigidTransform> X_WB = world.StartPoses();
+  const ContactPlaces places(world, X_WB);
+  const GraspGenerator generator = GraspGenerator::Load(weights / "generator.safetensors");
+  const CloudStructure structure = generator.BuildStructure(object.cloud.P, X_WB.front().linear());
+  ObjectState state;
+  state.up_O = -(X_WB.front().linear().transpose() * object.scene.gravity).normalized();
+  const EncodedState encoded = generator.Encode(structure, state);
+
+  GraspSearchConfig search;
+  search.max_found = kGraspsOfObject;
+  const auto draw = [&](int g, int part) {  // the third index is for refinement to split
+    return Rng(seed, RngStream::kProbedContacts, object.index, kPartsOfGrasp * g + part);
+  };
+  const GraspSearchResult found =
+      SearchGrasps(places, search, {}, draw(kGraspsOfObject, 0).NextU64(), pool);
+  std::array<Tally, kCases> generated, single, random;
+  std::vector<GeneratedGrasp> samples, single_draws, points;
+  std::vector<int> cases;
+  for (int g = 0; g < std::min<int>(kGraspsOfObject, std::ssize(found.found)); ++g) {
+    for (int which = 0; which < kCases; ++which) {
+      PlanningContacts given;
+      const Placement placement = ToPlacement(found.found[g].contacts, which);
+      for (int f = 0; f < kNumPlanningFingers; ++f) {
+        const Placement::Contact& contact = placement.fingers[f];
+        if (contact.on) given[f] = PlanningContact{contact.p_OC, contact.nhat_O};
+      }
+      Rng rng = draw(g, which);
+      const auto grasps = generator.Sample(structure, encoded, given, kSamplesOfCondition * kDraws,
+                                           draw(g, kCases + which));
+      for (auto first = grasps.begin(); first != grasps.end(); first += kDraws) {
+        const Rng refinement = draw(g, 2 * kCases + static_cast<int>(samples.size()));
+        samples.push_back({*first, refinement, {first + 1, first + kDraws}});
+        single_draws.push_back({*first, refinement});
+        points.push_back({DrawPoints(given, world.surface().P, rng), refinement});
+        cases.push_back(which);
+      }
+    }
+  }
+  // Each alone: what one sample's refinement finds must not help another's.
+  const auto complete = [&](const std::vector<GeneratedGrasp>& all, std::array<Tally, kCases>& to) {
+    std::vector<std::optional<CompletedGrasp>> done(all.size());
+    pool.ParallelFor(static_cast<int>(all.size()), [&](int i, int) {
+      ThrowIfInterrupted();
+      done[i] = CompleteGrasp(places, CompletionConfig(), all[i], {});
+    });
+    for (std::size_t i = 0; i < all.size(); ++i) to[cases[i]].Add(*done[i]);
+  };
+  complete(samples, generated);
+  complete(single_draws, single);
+  complete(points, random);
+  Json result{{"object", object.name}, {"family", family}, {"grasps", found.found.size()}};
+  for (int which = 0; which < kCases; ++which) {
+    result["generator"][kGeneratorNames[which]] = generated[which].ToJson();
+    result["single_draw"][kGeneratorNames[which]] = single[which].ToJson();
+    result["random"][kGeneratorNames[which]] = random[which].ToJson();
+  }
+  return result;
+}
+
+Json ProbeLadder(const Ladder& ladder, std::uint64_t seed, const StudySetup& setup) {
+  Job job({ladder.scene, seed, setup.planner, setup.weights}, setup.threads);
+  const auto planner = job.GetPlanner(job.world().InitialState(), setup.planner);
+  const ScoreFunction score = ScoreFunction::Load(setup.weights / "score.safetensors");
+  const PointCloud& cloud = planner->scorer().cloud();
+  const CloudStructure structure =
+      score.BuildStructure(cloud.P, ladder.scene.object().X_WB.linear());
+  SearchLabelConfig labels;
+  labels.thumbs = labels.indices = labels.pairs = labels.held_pairs = kContactsOfPose;
+
+  std::vector<ReachedState> states(ladder.poses.size());
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    states[i].state = FindHoldingPress(job.world(), ladder.poses[i], job.pool()).state;
+    PlanOutcome outcome;
+    outcome.end = states[i].state;
+    states[i].fixed = KeptContacts(EndToScore(job.world(), outcome));
+    if (!states[i].fixed.empty()) continue;
+    for (const Finger finger : {Finger::kThumb, Finger::kIndex}) {
+      job.world().LiftFinger(states[i].state, finger);
+    }
+  }
+  std::vector<Json> poses(states.size());
+  job.pool().ParallelFor(static_cast<int>(states.size()), [&](int i, int) {
+    ThrowIfInterrupted();
+    const std::vector<RigidTransform> X_WB = job.world().GetPoses(states[i].state);
+    const SearchLabels known =
+        LabelState(&job.world(), planner->grasp_world(), planner->room(), cloud, states[i], labels,
+                   Rng(seed, RngStream::kProbedLabels, i).NextU64());
+    std::vector<PlanningContacts> contacts;
+    for (const TruthRecord& truth : known.truths) contacts.push_back(truth.contacts);
+    const ObjectState seen =
+        MakeObjectState(cloud, X_WB, planner->grasp_world().environment(), ladder.scene.gravity);
+    const VectorX progress = score.ScoreContacts(structure, seen, contacts, ScoreOutput::kProgress);
+    const VectorX lifted = score.ScoreContacts(structure, seen, contacts, ScoreOutput::kLifted);
+    poses[i] = {{"held", !states[i].fixed.empty()}, {"grasps", known.stats.found.front()}};
+    for (int which = 0; which < kCases; ++which) {
+      poses[i][kGeneratorNames[which]] = FindBestTenth(known.truths, progress, lifted, which);
+    }
+  });
+  return {{"ladder", ladder.name}, {"seed", seed}, {"poses", poses}};
+}
+
+double TimeScore(const fs::path& weights) {
+  constexpr int kRollouts = 128, kStates = 3, kRepeats = 5;
+  const ScoreFunction score = ScoreFunction::Load(weights / "score.safetensors");
+  const FreeObject object(ObjectFamilies().front(), 0, 1);
+  const MatrixX3& P = object.cloud.P;
+  const CloudStructure structure = score.BuildStructure(P, Matrix3::Identity());
+  std::vector<ObjectState> states(kRollouts * kStates);
+  std::vector<PlanningContacts> contacts(states.size());
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    states[i].phi = VectorX::Constant(P.rows(), 0.05);
+    states[i].occluded.assign(P.rows(), false);
+    states[i].up_O = Vector3::UnitZ();
+    for (auto& contact : contacts[i]) {
+      contact =
+          PlanningContact{P.row(static_cast<Eigen::Index>(i) % P.rows()), Vector3::UnitZ(), 0.05};
+    }
+  }
+  ThreadPool alone(1);
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kRepeats; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    score.ScoreStates(structure, states, contacts, alone);
+    best = std::min(
+        best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return best;
+}
+
+}  // namespace pregrasp

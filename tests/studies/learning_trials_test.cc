@@ -1,0 +1,66 @@
+#include "app/studies/learning_trials.h"
+
+#include <gtest/gtest.h>
+
+#include "app/core/data_folder.h"
+#include "app/core/error.h"
+#include "app/networks/safetensors.h"
+#include "app/training/object_families.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path Weights() { return DataFolder() / "assets" / "weights"; }
+
+TEST(LearningTrialsTest, TheShippedScoreKnowsFamiliesThatItNeverSaw) {
+  const std::vector<std::string> held_out = ReadHeldOutFamilies(Weights());
+  ASSERT_GE(held_out.size(), 5U);
+  const auto facts =
+      JudgeScore(DataFolder() / "assets" / "training" / "states.safetensors.gz", Weights());
+  EXPECT_EQ(facts["families"].size(), held_out.size());
+  EXPECT_GT(facts["all"]["labels"], 30'000);
+  EXPECT_GT(facts["all"]["r2"], 0.6);
+  EXPECT_GT(facts["all"]["rank"], 0.75);
+  EXPECT_GT(facts["all"]["auc"], 0.8);
+  EXPECT_LT(facts["all"]["calibration"], 0.08);
+  for (const auto& [family, own] : facts["families"].items()) EXPECT_GT(own["r2"], 0.3) << family;
+}
+
+TEST(LearningTrialsTest, GeneratedGraspsAreBetterThanRandomPoints) {
+  ThreadPool pool(2);
+  int generated = 0, random = 0, samples = 0;
+  for (const char* family : {"flask", "tub"}) {
+    const auto facts = TryGenerator(family, 0, 7, Weights(), pool);
+    for (const auto& [name, counts] : facts["generator"].items()) {
+      EXPECT_EQ(counts["overlapping"], 0) << family << " " << name;
+      EXPECT_EQ(counts["samples"], facts["random"][name]["samples"]);
+      samples += counts["samples"].get<int>();
+      generated += counts["raw"].get<int>();
+      random += facts["random"][name]["raw"].get<int>();
+    }
+  }
+  ASSERT_GE(samples, 48);
+  EXPECT_GT(generated, 2 * random);
+}
+
+TEST(LearningTrialsTest, ATrialIsAFunctionOfItsArguments) {
+  ThreadPool one(1), two(2);
+  const auto a = TryGenerator("wedge", 1, 3, Weights(), one);
+  EXPECT_EQ(a, TryGenerator("wedge", 1, 3, Weights(), two));
+}
+
+TEST(LearningTrialsTest, WeightsThatHeldNothingOutAreRefused) {
+  const fs::path folder = fs::path(testing::TempDir()) / "seen_all";
+  fs::create_directories(folder);
+  TensorFile file = ReadTensors(Weights() / "score.safetensors");
+  file.metadata["training"] = R"({"validation":[]})";
+  WriteTensors(folder / "score.safetensors", file);
+  EXPECT_THROW(ReadHeldOutFamilies(folder), InputError);
+}
+
+TEST(LearningTrialsTest, ScoringTakesTime) { EXPECT_GT(TimeScore(Weights()), 0.0); }
+
+}  // namespace
+}  // namespace pregrasp
