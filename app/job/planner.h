@@ -25,7 +25,7 @@ namespace pregrasp {
 struct ScreenConfig {
   int paths = 24;      ///< in the first round; 1 does not screen
   int samples = 16;    ///< rollouts an iteration
-  int iterations = 2;  ///< a path and round
+  int iterations = 4;  ///< a path and round; with 2 the keyboard at the wall is given up at times
   int rounds = 3;
   int enough = 4;      ///< paths after which screening ends, if they are clear
   double clear = 0.5;  ///< worth so much more than doing nothing; a plan can be worth 6

@@ -481,7 +481,7 @@ function Optimizer:screen(options) end
 
 ---@class ScreenOptions
 ---@field samples? integer rollouts an iteration, 4 to 4096; 16
----@field iterations? integer of a path in a round, 1 to 1000; 2
+---@field iterations? integer of a path in a round, 1 to 1000; 4
 
 ---@class Screening
 ---@field round integer
