@@ -11,9 +11,6 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kGzipWindow = 15 + 16;  // the largest window, with gzip's header and CRC
-constexpr int kMemory = 8;            // zlib's default
-
 // zlib does not write to what it reads from; its type only lacks the const.
 void SetInput(std::string_view bytes, z_stream* stream) {
   stream->next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
@@ -38,7 +35,7 @@ int Collect(z_stream* stream, const Step& step, std::string* bytes) {
 
 std::string Deflate(std::string_view bytes) {
   z_stream stream{};
-  PREGRASP_CHECK(deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, kMemory,
+  PREGRASP_CHECK(deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, kGzipMemory,
                               Z_DEFAULT_STRATEGY) == Z_OK);
   const std::unique_ptr<z_stream, decltype(&deflateEnd)> cleanup(&stream, &deflateEnd);
   SetInput(bytes, &stream);

@@ -7,6 +7,8 @@ namespace pregrasp {
 
 /// gzip's settings of all that the house writes: without time and name, same content, same bytes.
 inline constexpr int kGzipLevel = 6;
+inline constexpr int kGzipWindow = 15 + 16;  ///< the largest window, with gzip's header and CRC
+inline constexpr int kGzipMemory = 8;        ///< zlib's default
 
 /// The bytes as a gzip file.
 std::string Deflate(std::string_view bytes);

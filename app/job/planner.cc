@@ -248,11 +248,9 @@ std::vector<GeneratedGrasp> Planner::GenerateGrasps(
     ThrowIfInterrupted();
     const PlanningContacts condition =
         MakePlanningContacts(request.condition, &X_WB, *environment_);
-    std::vector<GraspPoints> draws = generator_->Sample(*generator_structure_, encoded, condition,
-                                                        config_.grasp_draws, request.latent);
-    const GraspPoints first = draws.front();
-    draws.erase(draws.begin());
-    grasps.push_back({first, request.completion, std::move(draws)});
+    const std::vector<GraspPoints> draws = generator_->Sample(
+        *generator_structure_, encoded, condition, config_.grasp_draws, request.latent);
+    grasps.push_back({draws.front(), request.completion, {draws.begin() + 1, draws.end()}});
   }
   return grasps;
 }

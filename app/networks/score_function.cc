@@ -25,6 +25,8 @@ ScoreFunction ScoreFunction::FromTensors(const TensorFile& file) {
   score.encoder_ = SetEncoder::Load(file, "encoder");
   score.contacts_ = ContactFeatureConfig::FromJson(file.metadata_at("contacts"), file.where);
   const std::vector<int> widths = ReadHeadWidths(file, "score");
+  if (widths.back() > 3)
+    throw InputError(file.where, "score", "a head of one to three outputs", "");
   score.num_outputs_ = widths.back();
   score.head_ = Head::Load(file, "score", score.encoder_.config().code_size(),
                            ContactFeatureCount(score.contacts_, score.encoder_.config()), widths);

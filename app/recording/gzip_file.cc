@@ -11,9 +11,6 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kGzipWindow = 15 + 16;  // the largest window, with gzip's header and CRC
-constexpr int kMemory = 8;            // zlib's default
-
 // zlib does not write to what it reads from; its type only lacks the const.
 Bytef* InputOf(std::string_view bytes) {
   return reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
@@ -23,7 +20,7 @@ Bytef* InputOf(std::string_view bytes) {
 
 struct GzipFile::Impl {
   explicit Impl(const std::filesystem::path& path) : file(path) {
-    PREGRASP_CHECK(deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, kMemory,
+    PREGRASP_CHECK(deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, kGzipMemory,
                                 Z_DEFAULT_STRATEGY) == Z_OK);
   }
   ~Impl() { deflateEnd(&stream); }

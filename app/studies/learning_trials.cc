@@ -4,6 +4,8 @@
 #include <array>
 #include <chrono>
 #include <limits>
+#include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -20,6 +22,7 @@
 #include "app/training/make_item.h"
 #include "app/training/metrics.h"
 #include "app/training/search_labels.h"
+#include "app/training/training_data.h"
 
 namespace pregrasp {
 namespace {
@@ -29,7 +32,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kCases = 3;  // thumb, index, both: GeneratorOf's order
 constexpr int kGraspsOfObject = 6, kSamplesOfCondition = 4;
-constexpr int kDraws = 24;            // of a sample, as PlannerConfig::grasp_draws
 constexpr int kContactsOfPose = 200;  // of each case
 constexpr int kPartsOfGrasp = 1000;   // streams
 constexpr double kHandSpan = 0.13;    // between contacts of one hand [m]
@@ -85,14 +87,15 @@ struct FreeObject {
   Scene scene;
 };
 
-Placement ToPlacement(const std::vector<GraspContact>& contacts, int which) {
-  Placement placement;
+// What a grasp gives to one of the generators, with nothing around the object.
+PlanningContacts GivenBy(const std::vector<GraspContact>& grasp, int which) {
+  PlanningContacts given;
   for (int f = 0; f < kNumPlanningFingers; ++f) {
     if (which != 2 && which != f) continue;
-    const GraspContact* contact = FindContact(contacts, static_cast<Finger>(f));
-    if (contact) placement.fingers[f] = {true, contact->p_OC, contact->nhat_O};
+    const GraspContact* contact = FindContact(grasp, static_cast<Finger>(f));
+    if (contact) given[f] = PlanningContact{contact->p_OC, contact->nhat_O};
   }
-  return placement;
+  return given;
 }
 
 // What became of samples.
@@ -178,42 +181,34 @@ Json JudgeScore(const fs::path& labels, const fs::path& weights) {
   const TensorFile file = ReadTensors(weights / "score.safetensors");
   const ScoreFunction score = ScoreFunction::FromTensors(file);
   const bool by_room = TrainingOf(file).value("progress", "relief") == "room";
-  const Dataset dataset = ReadDataset(labels);
+  const TrainingData data =
+      PrepareTrainingData(std::make_shared<Dataset>(ReadDataset(labels)),
+                          score.encoder().config().levels, ReadHeldOutFamilies(weights),
+                          [](const TrainingContext& context) { return !context.truths.empty(); });
   Judged all, held, not_held;
-  Json families;
-  for (const std::string& family : ReadHeldOutFamilies(weights)) {
-    Judged own;
-    for (const DatasetItem& item : dataset.items) {
-      if (item.family != family) continue;
-      ThrowIfInterrupted();
-      for (int c = 0; c < static_cast<int>(item.contexts.size()); ++c) {
-        const ContextRecord& context = item.contexts[c];
-        std::vector<const TruthRecord*> truths;
-        std::vector<PlanningContacts> contacts;
-        for (const TruthRecord& truth : item.truths) {
-          if (truth.context != c) continue;
-          truths.push_back(&truth);
-          contacts.push_back(truth.contacts);
-        }
-        const CloudStructure structure = score.BuildStructure(item.P_O, context.X_WO.linear());
-        const ObjectState state = SeenIn(context);
-        const VectorX s = score.ScoreContacts(structure, state, contacts, ScoreOutput::kProgress);
-        const VectorX p = score.ScoreContacts(structure, state, contacts, ScoreOutput::kLifted);
-        const bool pressed = context.kind.find("held") != std::string::npos;
-        for (std::size_t i = 0; i < truths.size(); ++i) {
-          const double progress = by_room ? truths[i]->room : truths[i]->relief;
-          for (Judged* judged : {&own, &all, pressed ? &held : &not_held}) {
-            judged->Add(progress, s[static_cast<Eigen::Index>(i)], truths[i]->lifted,
-                        p[static_cast<Eigen::Index>(i)]);
-          }
-        }
+  std::map<std::string, Judged> families;
+  for (const TrainingContext& context : data.validation) {
+    ThrowIfInterrupted();
+    std::vector<PlanningContacts> contacts;
+    for (const TruthRecord* truth : context.truths) contacts.push_back(truth->contacts);
+    CloudStructure structure = *context.structure;
+    structure.R_WO0 = context.context->X_WO.linear();
+    const ObjectState state = SeenIn(*context.context);
+    const VectorX s = score.ScoreContacts(structure, state, contacts, ScoreOutput::kProgress);
+    const VectorX p = score.ScoreContacts(structure, state, contacts, ScoreOutput::kLifted);
+    const bool pressed = context.context->kind.find("held") != std::string::npos;
+    for (Eigen::Index i = 0; i < s.size(); ++i) {
+      const TruthRecord& truth = *context.truths[i];
+      for (Judged* judged : {&families[context.item->family], &all, pressed ? &held : &not_held}) {
+        judged->Add(by_room ? truth.room : truth.relief, s[i], truth.lifted, p[i]);
       }
     }
-    families[family] = own.ToJson();
   }
-  return {{"labels", dataset.hash},        {"progress", by_room ? "room" : "relief"},
+  Json by_family;
+  for (const auto& [family, judged] : families) by_family[family] = judged.ToJson();
+  return {{"labels", data.dataset->hash},  {"progress", by_room ? "room" : "relief"},
           {"all", all.ToJson()},           {"held", held.ToJson()},
-          {"not_held", not_held.ToJson()}, {"families", families}};
+          {"not_held", not_held.ToJson()}, {"families", by_family}};
 }
 
 Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t seed,
@@ -228,6 +223,7 @@ Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t 
   state.up_O = -(X_WB.front().linear().transpose() * object.scene.gravity).normalized();
   const EncodedState encoded = generator.Encode(structure, state);
 
+  const int draws = PlannerConfig().grasp_draws;
   GraspSearchConfig search;
   search.max_found = kGraspsOfObject;
   const auto draw = [&](int g, int part) {  // the third index is for refinement to split
@@ -240,18 +236,13 @@ Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t 
   std::vector<int> cases;
   for (int g = 0; g < std::min<int>(kGraspsOfObject, std::ssize(found.found)); ++g) {
     for (int which = 0; which < kCases; ++which) {
-      PlanningContacts given;
-      const Placement placement = ToPlacement(found.found[g].contacts, which);
-      for (int f = 0; f < kNumPlanningFingers; ++f) {
-        const Placement::Contact& contact = placement.fingers[f];
-        if (contact.on) given[f] = PlanningContact{contact.p_OC, contact.nhat_O};
-      }
+      const PlanningContacts given = GivenBy(found.found[g].contacts, which);
       Rng rng = draw(g, which);
-      const auto grasps = generator.Sample(structure, encoded, given, kSamplesOfCondition * kDraws,
+      const auto grasps = generator.Sample(structure, encoded, given, kSamplesOfCondition * draws,
                                            draw(g, kCases + which));
-      for (auto first = grasps.begin(); first != grasps.end(); first += kDraws) {
+      for (auto first = grasps.begin(); first != grasps.end(); first += draws) {
         const Rng refinement = draw(g, 2 * kCases + static_cast<int>(samples.size()));
-        samples.push_back({*first, refinement, {first + 1, first + kDraws}});
+        samples.push_back({*first, refinement, {first + 1, first + draws}});
         single_draws.push_back({*first, refinement});
         points.push_back({DrawPoints(given, world.surface().P, rng), refinement});
         cases.push_back(which);

@@ -120,7 +120,8 @@ int StudyAblations(const std::shared_ptr<const Dataset>& dataset, Options option
       const std::string name = fmt::format("{}-{}", ScoreVariantName(variant), one.training.seed);
       ScoreTask task(dataset, one.validation, one.score);
       study["variants"][ScoreVariantName(variant)].push_back(Train(task, one, name));
-      study["variants"]["constant"] = Json::array({task.EvaluateConstant()});
+      Json& constant = study["variants"]["constant"];
+      if (constant.is_null()) constant = Json::array({task.EvaluateConstant()});
     }
   }
   WriteJson(options.out / "ablations.json", study);
