@@ -32,4 +32,10 @@ void RequireWithin(const std::string& where, const std::string& field, const Num
   }
 }
 
+void RequireAtLeast(const std::string& where, const std::string& field, int least, int value) {
+  if (value < least) {
+    throw InputError(where, field, "at least " + std::to_string(least), std::to_string(value));
+  }
+}
+
 }  // namespace pregrasp

@@ -23,4 +23,7 @@ struct NumberRange {
 void RequireWithin(const std::string& where, const std::string& field, const NumberRange& range,
                    double value);
 
+/// @throws InputError(where, field) if `value` is less than `least`.
+void RequireAtLeast(const std::string& where, const std::string& field, int least, int value);
+
 }  // namespace pregrasp

@@ -14,6 +14,14 @@ inline constexpr std::string_view kBlank = " \t\r\n\f\v";
 /// @throws std::runtime_error always.
 [[noreturn]] inline void Fail(const std::string& what) { throw std::runtime_error(what); }
 
+/// Takes the next line from the beginning of `rest`, without its end; empty at the end of the text.
+inline std::string_view NextLine(std::string_view& rest) {
+  std::string_view line = rest.substr(0, rest.find('\n'));
+  rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
 /// Takes the next word from the beginning of `rest`; empty at its end.
 inline std::string_view NextWord(std::string_view& rest) {
   const std::size_t begin = rest.find_first_not_of(kBlank);

@@ -43,13 +43,9 @@ struct PlyHeader {
   std::vector<Element> elements;
 };
 
-std::string_view NextLine(std::string_view& rest) {
-  const std::size_t end = rest.find('\n');
-  if (end == std::string_view::npos) Fail("ends within its header");
-  std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(end + 1);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  return line;
+std::string_view NextHeaderLine(std::string_view& rest) {
+  if (rest.find('\n') == std::string_view::npos) Fail("ends within its header");
+  return internal::NextLine(rest);
 }
 
 Number ParseType(std::string_view word) {
@@ -92,11 +88,11 @@ Element ParseElement(std::string_view line) {
 // Leaves `rest` at the first byte after the header.
 PlyHeader ParseHeader(std::string_view& rest) {
   if (rest.substr(0, 3) != "ply") Fail("does not begin with \"ply\"");
-  NextLine(rest);
+  NextHeaderLine(rest);
   PlyHeader header;
   bool has_format = false;
   for (;;) {
-    std::string_view line = NextLine(rest);
+    std::string_view line = NextHeaderLine(rest);
     const std::string_view key = NextWord(line);
     if (key == "end_header") break;
     if (key == "format") {
@@ -123,9 +119,9 @@ PlyHeader ParseHeader(std::string_view& rest) {
 }
 
 // Takes numbers off the front of the body.
-class Body {
+class PlyBody {
  public:
-  Body(std::string_view bytes, Encoding encoding) : rest_(bytes), encoding_(encoding) {}
+  PlyBody(std::string_view bytes, Encoding encoding) : rest_(bytes), encoding_(encoding) {}
 
   double Next(Number type, const Element& element) {
     if (encoding_ == Encoding::kAscii) return NextText(element);
@@ -181,7 +177,7 @@ class Body {
 };
 
 // One element's numbers; lists are read whole.
-std::vector<double> ReadProperty(Body& body, const Property& property, const Element& element) {
+std::vector<double> ReadProperty(PlyBody& body, const Property& property, const Element& element) {
   std::size_t count = 1;
   if (property.list_count) {
     const double length = body.Next(*property.list_count, element);
@@ -197,7 +193,7 @@ std::vector<double> ReadProperty(Body& body, const Property& property, const Ele
   return values;
 }
 
-void ReadVertices(Body& body, const Element& element, PlyContent& content) {
+void ReadVertices(PlyBody& body, const Element& element, PlyContent& content) {
   std::array<int, 6> slots{-1, -1, -1, -1, -1, -1};
   static constexpr std::array<const char*, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -229,7 +225,7 @@ struct Polygons {
   std::vector<std::size_t> begins;
 };
 
-Polygons ReadFaces(Body& body, const Element& element) {
+Polygons ReadFaces(PlyBody& body, const Element& element) {
   Polygons polygons;
   constexpr double kMostVertices = std::numeric_limits<int>::max();
   for (std::size_t f = 0; f < element.count; ++f) {
@@ -289,7 +285,7 @@ PlyContent ParsePly(std::string_view bytes) {
   const auto strips = std::any_of(header.elements.begin(), header.elements.end(),
                                   [](const Element& e) { return e.name == "tristrips"; });
   if (strips) Fail("has triangle strips, which are not read");
-  Body body(bytes, header.encoding);
+  PlyBody body(bytes, header.encoding);
   PlyContent content;
   Polygons polygons;
   for (const Element& element : header.elements) {

@@ -18,13 +18,8 @@ namespace {
 
 using internal::Fail;
 using internal::kBlank;
+using internal::NextLine;
 using internal::NextWord;
-
-std::string_view NextLine(std::string_view& rest) {
-  const std::string_view line = rest.substr(0, rest.find('\n'));
-  rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-  return line;
-}
 
 template <typename T>
 T ToNumber(std::string_view word, const char* of) {

@@ -23,12 +23,12 @@ struct SectorPlan {
   double cost = std::numeric_limits<double>::infinity();        // pieces in all sectors
 };
 
-struct Facet {  // of a profile, as (distance from the axis, height along it)
+struct ProfileFacet {  // of a profile, as (distance from the axis, height along it)
   std::array<Vector2, 3> corners;
   Vector2 normal = Vector2::Zero();
 };
 
-struct Line {
+struct ProfileLine {
   Vector2 nhat;
   double offset = 0.0;
 
@@ -41,19 +41,19 @@ struct Meridian {
 
   Vector2 Point(const Vector3& p) const { return Direction(p - p_B); }
   Vector2 Direction(const Vector3& v) const { return {v.dot(radial), v.dot(axis)}; }
-  Plane Lift(const Line& line) const {
+  Plane Lift(const ProfileLine& line) const {
     const Vector3 nhat = line.nhat.x() * radial + line.nhat.y() * axis;
     return {nhat, line.offset + nhat.dot(p_B)};
   }
 
   // The piece's triangles, and the axis between those of its corners that are as near to it as
   // `axis_radius` [m].
-  std::vector<Facet> Project(const Piece& piece, double axis_radius) const {
-    std::vector<Facet> profile;
+  std::vector<ProfileFacet> Project(const Piece& piece, double axis_radius) const {
+    std::vector<ProfileFacet> profile;
     Vector2 low(0.0, std::numeric_limits<double>::infinity()), high(0.0, -low.y());
     for (const SolidPart& part : piece.parts) {
       for (const Triangle& t : part.surface) {
-        Facet facet;
+        ProfileFacet facet;
         facet.normal = Direction((t[1] - t[0]).cross(t[2] - t[0]));
         for (int i = 0; i < 3; ++i) {
           const Vector2& p = facet.corners[i] = Point(t[i]);
@@ -100,9 +100,9 @@ double CalcRevolvedVolume(std::vector<Vector2>& points) {
 
 // Of the parts of a profile on both sides of a line; infinite when one is empty. Heights within
 // `snap` [m] are on the line; a facet on it goes to the side on which its solid is.
-double CalcVolumeOfHulls(const std::vector<Facet>& profile, const Line& line, double snap) {
+double CalcVolumeOfHulls(const std::vector<ProfileFacet>& profile, const ProfileLine& line, double snap) {
   std::vector<Vector2> below, above;
-  for (const Facet& facet : profile) {
+  for (const ProfileFacet& facet : profile) {
     std::array<double, 3> height{};
     for (int i = 0; i < 3; ++i) {
       height[i] = line.Height(facet.corners[i]);
@@ -200,15 +200,15 @@ class SectorCutter {
 
   // Lines that may cut a profile: in even directions and distances, and at the corners of its
   // largest facets, along and across them.
-  std::vector<Line> ListLines(const Piece& piece, const Meridian& meridian,
-                              const std::vector<Facet>& profile) const {
-    std::vector<Line> lines;
+  std::vector<ProfileLine> ListLines(const Piece& piece, const Meridian& meridian,
+                              const std::vector<ProfileFacet>& profile) const {
+    std::vector<ProfileLine> lines;
     constexpr int kDirections = 8, kAcross = 7;
     for (int d = 0; d < kDirections; ++d) {
       const double angle = kPi * d / kDirections;
       const Vector2 nhat(std::cos(angle), std::sin(angle));
       double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (const Facet& facet : profile) {
+      for (const ProfileFacet& facet : profile) {
         for (const Vector2& p : facet.corners) {
           low = std::min(low, nhat.dot(p));
           high = std::max(high, nhat.dot(p));
@@ -233,11 +233,11 @@ class SectorCutter {
 
   // The cut whose two hulls, as solids of revolution, hold least.
   std::vector<Piece> FindHalves(const Piece& piece, const Meridian& meridian) const {
-    const std::vector<Facet> profile = meridian.Project(piece, kAxisShare * maker_.size());
-    std::vector<std::pair<double, Line>> ranked;
-    std::vector<Line> tried;
-    for (const Line& line : ListLines(piece, meridian, profile)) {
-      const bool similar = std::any_of(tried.begin(), tried.end(), [&](const Line& other) {
+    const std::vector<ProfileFacet> profile = meridian.Project(piece, kAxisShare * maker_.size());
+    std::vector<std::pair<double, ProfileLine>> ranked;
+    std::vector<ProfileLine> tried;
+    for (const ProfileLine& line : ListLines(piece, meridian, profile)) {
+      const bool similar = std::any_of(tried.begin(), tried.end(), [&](const ProfileLine& other) {
         const double along = other.nhat.dot(line.nhat);
         const double apart = other.offset - std::copysign(1.0, along) * line.offset;
         return std::abs(along) > 0.9999 && std::abs(apart) < 0.001 * maker_.size();

@@ -6,6 +6,7 @@
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/core/number_range.h"
 #include "app/core/text.h"
 #include "app/grasp/grasp_refinement.h"
 #include "app/grasp/spaced_projection.h"
@@ -179,12 +180,6 @@ class Completion {
   std::vector<HandConfiguration> solved_;
 };
 
-void RequireCount(const char* field, int value, int least) {
-  if (value < least) {
-    throw InputError("", field, "at least " + std::to_string(least), std::to_string(value));
-  }
-}
-
 }  // namespace
 
 void CompletionConfig::Validate() const {
@@ -194,12 +189,12 @@ void CompletionConfig::Validate() const {
     throw InputError("", "max_refinement", "a length from 0 to 0.1 m",
                      FormatDouble(max_refinement));
   }
-  RequireCount("max_raw_tests", max_raw_tests, 1);
-  RequireCount("max_solves", max_solves, 0);
-  RequireCount("refinement_starts", refinement_starts, 1);
-  RequireCount("patience", patience, 1);
-  RequireCount("max_probes", max_probes, 0);
-  RequireCount("max_stiffness_tests", max_stiffness_tests, 0);
+  RequireAtLeast("", "max_raw_tests", 1, max_raw_tests);
+  RequireAtLeast("", "max_solves", 0, max_solves);
+  RequireAtLeast("", "refinement_starts", 1, refinement_starts);
+  RequireAtLeast("", "patience", 1, patience);
+  RequireAtLeast("", "max_probes", 0, max_probes);
+  RequireAtLeast("", "max_stiffness_tests", 0, max_stiffness_tests);
   forces.Validate();
 }
 

@@ -6,6 +6,7 @@
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/core/number_range.h"
 
 namespace pregrasp {
 namespace {
@@ -27,13 +28,6 @@ struct SolvedSet {
   bool reached = false;
   std::optional<GraspResult> grasp;
 };
-
-void RequireCount(const char* field, int value, int least = 1) {
-  if (value < least) {
-    throw InputError("grasp_search", field, "at least " + std::to_string(least),
-                     std::to_string(value));
-  }
-}
 
 bool HasEdge(const std::vector<GraspContact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(),
@@ -95,10 +89,10 @@ class Searcher {
 void GraspSearchConfig::Validate() const {
   grasp.Validate();
   sampler.Validate();
-  RequireCount("max_sets", max_sets, 0);
-  RequireCount("max_plausible", max_plausible);
-  RequireCount("max_solves", max_solves);
-  RequireCount("max_found", max_found);
+  RequireAtLeast("grasp_search", "max_sets", 0, max_sets);
+  RequireAtLeast("grasp_search", "max_plausible", 1, max_plausible);
+  RequireAtLeast("grasp_search", "max_solves", 1, max_solves);
+  RequireAtLeast("grasp_search", "max_found", 1, max_found);
 }
 
 GraspSearchConfig MakeSecondSourceConfig() {

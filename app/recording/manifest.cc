@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kName[] = "manifest.json";
-constexpr char kSchema[] = "pregrasp.run/1";
+constexpr char kRunSchema[] = "pregrasp.run/1";
 constexpr std::size_t kHexDigits = 64;
 
 // How manifest.json lists itself, up to the digest. `files` is its last field and no other file has
@@ -31,7 +31,7 @@ std::string HashOf(const fs::path& file) {
 // The files that a manifest lists, with their hashes; none if it is not a run's manifest.
 std::optional<std::map<std::string, std::string>> ParseManifest(const std::string& text) {
   const nlohmann::json manifest = nlohmann::json::parse(text, nullptr, false);
-  if (!manifest.is_object() || manifest.value("schema", nlohmann::json()) != kSchema) return {};
+  if (!manifest.is_object() || manifest.value("schema", nlohmann::json()) != kRunSchema) return {};
   const auto files = manifest.find("files");
   if (files == manifest.end() || !files->is_object()) return {};
   std::map<std::string, std::string> hashes;
@@ -86,7 +86,7 @@ void WriteManifest(const fs::path& directory, const nlohmann::ordered_json& fiel
   for (const std::string& file : ListRunFiles(directory).files) {
     if (file != kName && file != kUnfinishedMark) files[file] = HashOf(directory / file);
   }
-  nlohmann::ordered_json manifest = {{"schema", kSchema}};
+  nlohmann::ordered_json manifest = {{"schema", kRunSchema}};
   manifest.update(fields);
   manifest["files"] = std::move(files);
   std::string text = FormatJsonIndented(manifest);

@@ -1,19 +1,14 @@
 #include "app/recording/rollout_table.h"
 
 #include "app/core/text.h"
+#include "app/recording/csv_cells.h"
 
 namespace pregrasp {
 namespace {
 
-void AppendNames(std::string& out, const std::string& stem) {
-  for (const char* axis : {"_x", "_y", "_z"}) out.append(",").append(stem).append(axis);
-}
-
-void Append(std::string& out, double value) { out.append(",").append(FormatDouble(value)); }
-
-void Append(std::string& out, const Vector3& v) {
-  for (int i = 0; i < 3; ++i) Append(out, v[i]);
-}
+using internal::AppendCell;
+using internal::AppendCells;
+using internal::AppendVectorNames;
 
 // The time and the movable bodies, which both tables begin with.
 std::string BodyHeader(const Scene& scene) {
@@ -21,11 +16,10 @@ std::string BodyHeader(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     if (!body.movable()) continue;
     const std::string prefix = &body == scene.bodies.data() ? "" : body.name + '_';
-    AppendNames(header, prefix + "p_WO");
-    header.append(",").append(prefix).append("q_WO_w");
-    AppendNames(header, prefix + "q_WO");
-    AppendNames(header, prefix + "w_WO");
-    AppendNames(header, prefix + "v_WO");
+    AppendVectorNames(header, prefix + "p_WO");
+    internal::AppendQuaternionNames(header, prefix + "q_WO");
+    AppendVectorNames(header, prefix + "w_WO");
+    AppendVectorNames(header, prefix + "v_WO");
   }
   return header;
 }
@@ -33,11 +27,10 @@ std::string BodyHeader(const Scene& scene) {
 std::string BodyColumns(const WorldState& state) {
   std::string row = FormatDouble(state.t);
   for (const BodyState& body : state.bodies) {
-    Append(row, body.p_WB);
-    Append(row, body.q_WB.w());
-    Append(row, Vector3(body.q_WB.vec()));
-    Append(row, body.w_WB);
-    Append(row, body.v_WB);
+    AppendCells(row, body.p_WB);
+    AppendCells(row, body.q_WB);
+    AppendCells(row, body.w_WB);
+    AppendCells(row, body.v_WB);
   }
   return row;
 }
@@ -45,15 +38,15 @@ std::string BodyColumns(const WorldState& state) {
 void AppendFingerNames(std::string& header, int finger) {
   const std::string prefix = std::string(kFingerNames[finger]) + '_';
   header.append(",").append(prefix).append("on");
-  for (const char* stem : {"p_OC", "n_OC", "target_W", "f_W"}) AppendNames(header, prefix + stem);
+  for (const char* stem : {"p_OC", "n_OC", "target_W", "f_W"}) AppendVectorNames(header, prefix + stem);
 }
 
 void AppendFinger(std::string& row, const FingertipState& finger) {
   row.append(finger.on ? ",1" : ",0");
-  Append(row, finger.p_OC);
-  Append(row, finger.nhat_O);
-  Append(row, finger.p_WTarget);
-  Append(row, finger.f_W);
+  AppendCells(row, finger.p_OC);
+  AppendCells(row, finger.nhat_O);
+  AppendCells(row, finger.p_WTarget);
+  AppendCells(row, finger.f_W);
 }
 
 }  // namespace
@@ -84,8 +77,8 @@ std::string LiftRow(const WorldState& state) {
   std::string row = BodyColumns(state);
   for (const FingertipState& finger : state.fingers) {
     AppendFinger(row, finger);
-    Append(row, finger.stiffness);
-    Append(row, finger.damping);
+    AppendCell(row, finger.stiffness);
+    AppendCell(row, finger.damping);
   }
   return row + '\n';
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr char kSchema[] = "pregrasp.scene/1";
+constexpr char kSceneSchema[] = "pregrasp.scene/1";
 
 Json ToJson(const RigidTransform& X) {
   return {{"p", pregrasp::ToJson(Vector3(X.translation()))},
@@ -177,7 +177,7 @@ void WriteScene(const std::filesystem::path& directory, const Scene& scene, doub
   for (const Body& body : scene.bodies) {
     bodies.push_back(BodyToJson(body, &body == scene.bodies.data(), directory));
   }
-  const Json json = {{"schema", kSchema},
+  const Json json = {{"schema", kSceneSchema},
                      {"name", scene.name},
                      {"gravity", pregrasp::ToJson(scene.gravity)},
                      {"dt", dt},
@@ -190,7 +190,7 @@ void WriteScene(const std::filesystem::path& directory, const Scene& scene, doub
 Scene LoadScene(const std::filesystem::path& file) {
   const nlohmann::json document = ParseJson(ReadFile(file), file.string());
   const JsonReader reader(document, file.string());
-  if (reader["schema"].Text() != kSchema) reader["schema"].Fail(kSchema);
+  if (reader["schema"].Text() != kSceneSchema) reader["schema"].Fail(kSceneSchema);
   Scene scene;
   scene.name = reader["name"].Text();
   scene.file = file.string();

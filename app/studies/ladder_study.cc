@@ -46,7 +46,7 @@ std::string ShareText(int part, int whole) {
   return whole == 0 ? "-" : fmt::format("{} of {}", part, whole);
 }
 
-StudyFiles Tabulate(const std::vector<nlohmann::json>& items) {
+StudyFiles TabulateLadders(const std::vector<nlohmann::json>& items) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::vector<nlohmann::ordered_json> flat;
   std::vector<std::vector<std::string>> poses = {{"ladder", "seed", "pose", "moved, turned",
@@ -96,7 +96,7 @@ StudyFiles Tabulate(const std::vector<nlohmann::json>& items) {
            MarkdownTable(oracles)}};
 }
 
-std::string DescribeItem(const nlohmann::json& item) {
+std::string DescribeLadderItem(const nlohmann::json& item) {
   const LadderFacts facts = ReadFacts({item}).front();
   double progress = 0.0;
   for (const OracleFacts& oracle : facts.oracle) progress = std::max(progress, oracle.progress);
@@ -114,8 +114,8 @@ StudyInfo LadderStudy() {
           [](const StudySetup& setup) -> std::unique_ptr<Study> {
             return std::make_unique<LadderItems>(setup);
           },
-          DescribeItem,
-          Tabulate};
+          DescribeLadderItem,
+          TabulateLadders};
 }
 
 }  // namespace pregrasp

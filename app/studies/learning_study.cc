@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kObjects = 3;  // of each family held out and seed
-constexpr std::array<const char*, 3> kCases{"thumb", "index", "both"};
+constexpr std::array<const char*, 3> kCaseNames{"thumb", "index", "both"};
 
 // Items: the labels, the score's speed, objects by family, number and seed, ladders by seed.
 class LearningItems : public Study {
@@ -78,7 +78,7 @@ double CalcShare(const std::vector<nlohmann::json>& items, const char* source,
 Json CalcLadder(const std::vector<nlohmann::json>& items, const std::string& ladder) {
   Json result;
   std::vector<double> all_scores, all_truths;
-  for (const char* one : kCases) {
+  for (const char* one : kCaseNames) {
     std::vector<double> scores, truths;
     for (const nlohmann::json& item : items) {
       if (item.at("kind") != "ladder" || item.at("ladder") != ladder) continue;
@@ -100,7 +100,7 @@ std::string NumberText(const Json& value) {
   return value.is_null() ? "-" : fmt::format("{:.2f}", value.get<double>());
 }
 
-StudyFiles Tabulate(const std::vector<nlohmann::json>& items) {
+StudyFiles TabulateLearning(const std::vector<nlohmann::json>& items) {
   const nlohmann::json& score = items.at(0);
   Json summary{{"score_r2", score.at("all").at("r2")},
                {"score_rank", score.at("all").at("rank")},
@@ -145,7 +145,7 @@ StudyFiles Tabulate(const std::vector<nlohmann::json>& items) {
     int number = 0;
     for (const nlohmann::json& pose : item.at("poses")) {
       ++number;
-      for (const char* one : kCases) {
+      for (const char* one : kCaseNames) {
         const nlohmann::json& best = pose.at(one);
         if (best.is_null()) continue;
         poses.push_back({name, std::to_string(item.at("seed").get<std::uint64_t>()),
@@ -165,7 +165,7 @@ StudyFiles Tabulate(const std::vector<nlohmann::json>& items) {
                MarkdownTable(families), MarkdownTable(ladders), MarkdownTable(poses))}};
 }
 
-std::string DescribeItem(const nlohmann::json& item) {
+std::string DescribeLearningItem(const nlohmann::json& item) {
   const std::string kind = item.at("kind");
   if (kind == "score") {
     return fmt::format("score: R2 {:.3f}, AUC {:.3f}", item.at("all").at("r2").get<double>(),
@@ -188,8 +188,8 @@ StudyInfo LearningStudy() {
           [](const StudySetup& setup) -> std::unique_ptr<Study> {
             return std::make_unique<LearningItems>(setup);
           },
-          DescribeItem,
-          Tabulate};
+          DescribeLearningItem,
+          TabulateLearning};
 }
 
 }  // namespace pregrasp

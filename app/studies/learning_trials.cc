@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kCases = 3;  // thumb, index, both: GeneratorOf's order
+constexpr int kNumCases = 3;  // thumb, index, both: GeneratorOf's order
 constexpr int kGraspsOfObject = 6, kSamplesOfCondition = 4;
 constexpr int kContactsOfPose = 200;  // of each case
 constexpr int kPartsOfGrasp = 1000;   // streams
@@ -231,17 +231,17 @@ Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t 
   };
   const GraspSearchResult found =
       SearchGrasps(places, search, {}, draw(kGraspsOfObject, 0).NextU64(), pool);
-  std::array<Tally, kCases> generated, single, random;
+  std::array<Tally, kNumCases> generated, single, random;
   std::vector<GeneratedGrasp> samples, single_draws, points;
   std::vector<int> cases;
   for (int g = 0; g < std::min<int>(kGraspsOfObject, std::ssize(found.found)); ++g) {
-    for (int which = 0; which < kCases; ++which) {
+    for (int which = 0; which < kNumCases; ++which) {
       const PlanningContacts given = GivenBy(found.found[g].contacts, which);
       Rng rng = draw(g, which);
       const auto grasps = generator.Sample(structure, encoded, given, kSamplesOfCondition * draws,
-                                           draw(g, kCases + which));
+                                           draw(g, kNumCases + which));
       for (auto first = grasps.begin(); first != grasps.end(); first += draws) {
-        const Rng refinement = draw(g, 2 * kCases + static_cast<int>(samples.size()));
+        const Rng refinement = draw(g, 2 * kNumCases + static_cast<int>(samples.size()));
         samples.push_back({*first, refinement, {first + 1, first + draws}});
         single_draws.push_back({*first, refinement});
         points.push_back({DrawPoints(given, world.surface().P, rng), refinement});
@@ -250,7 +250,8 @@ Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t 
     }
   }
   // Each alone: what one sample's refinement finds must not help another's.
-  const auto complete = [&](const std::vector<GeneratedGrasp>& all, std::array<Tally, kCases>& to) {
+  const auto complete = [&](const std::vector<GeneratedGrasp>& all,
+                            std::array<Tally, kNumCases>& to) {
     std::vector<std::optional<CompletedGrasp>> done(all.size());
     pool.ParallelFor(static_cast<int>(all.size()), [&](int i, int) {
       ThrowIfInterrupted();
@@ -262,7 +263,7 @@ Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t 
   complete(single_draws, single);
   complete(points, random);
   Json result{{"object", object.name}, {"family", family}, {"grasps", found.found.size()}};
-  for (int which = 0; which < kCases; ++which) {
+  for (int which = 0; which < kNumCases; ++which) {
     result["generator"][kGeneratorNames[which]] = generated[which].ToJson();
     result["single_draw"][kGeneratorNames[which]] = single[which].ToJson();
     result["random"][kGeneratorNames[which]] = random[which].ToJson();
@@ -305,7 +306,7 @@ Json ProbeLadder(const Ladder& ladder, std::uint64_t seed, const StudySetup& set
     const VectorX progress = score.ScoreContacts(structure, seen, contacts, ScoreOutput::kProgress);
     const VectorX lifted = score.ScoreContacts(structure, seen, contacts, ScoreOutput::kLifted);
     poses[i] = {{"held", !states[i].fixed.empty()}, {"grasps", known.stats.found.front()}};
-    for (int which = 0; which < kCases; ++which) {
+    for (int which = 0; which < kNumCases; ++which) {
       poses[i][kGeneratorNames[which]] = FindBestTenth(known.truths, progress, lifted, which);
     }
   });

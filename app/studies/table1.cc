@@ -278,7 +278,7 @@ std::string CsvText(const std::vector<Row>& rows) {
   return CsvTable(records);
 }
 
-StudyFiles Tabulate(const std::vector<nlohmann::json>& items) {
+StudyFiles TabulateTable1(const std::vector<nlohmann::json>& items) {
   const std::vector<Row> rows = ReadRows(items);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Row& row : rows) list.push_back(fields::Write(row));
@@ -287,7 +287,7 @@ StudyFiles Tabulate(const std::vector<nlohmann::json>& items) {
           {"table1.md", MarkdownText(rows)}};
 }
 
-std::string DescribeItem(const nlohmann::json& item) {
+std::string DescribeTable1Item(const nlohmann::json& item) {
   const Row row = ReadRows({item}).front();
   return fmt::format("{} seed {}: {}, {} paths, {:.1f} s", row.scene, row.seed,
                      row.status.value_or("-"), row.n_paths.value_or(0), row.seconds);
@@ -302,8 +302,8 @@ StudyInfo Table1Study() {
           [](const StudySetup& setup) -> std::unique_ptr<Study> {
             return std::make_unique<Table1>(setup);
           },
-          DescribeItem,
-          Tabulate};
+          DescribeTable1Item,
+          TabulateTable1};
 }
 
 }  // namespace pregrasp

@@ -19,7 +19,7 @@ using testing::internal::CaptureStdout;
 using testing::internal::GetCapturedStdout;
 
 // Small stages, so that a test takes well under a second.
-const char* const kPrelude = R"(local pg = require "pregrasp"
+const char* const kPlannerPrelude = R"(local pg = require "pregrasp"
 local function session() return pg.open "scenes/ruler.lua" end
 local function graph(s) return (s or session()):graph{ triangles = 12, samples = 1, points = 128 } end
 local function pruned(s) local g = graph(s) g:score() g:prune{ top_percent = 20 } return g end
@@ -39,7 +39,7 @@ class PlannerScriptTest : public testing::Test {
   std::string Script(const std::string& body) {
     config_.output = folder_.path() / "out";
     if (config_.weights.empty()) config_.weights = weights_->path();
-    const auto file = folder_.Write("test.lua", kPrelude + body);
+    const auto file = folder_.Write("test.lua", kPlannerPrelude + body);
     CaptureStdout();
     try {
       RunScript(file, {}, config_);
