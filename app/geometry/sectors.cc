@@ -100,7 +100,8 @@ double CalcRevolvedVolume(std::vector<Vector2>& points) {
 
 // Of the parts of a profile on both sides of a line; infinite when one is empty. Heights within
 // `snap` [m] are on the line; a facet on it goes to the side on which its solid is.
-double CalcVolumeOfHulls(const std::vector<ProfileFacet>& profile, const ProfileLine& line, double snap) {
+double CalcVolumeOfHulls(const std::vector<ProfileFacet>& profile, const ProfileLine& line,
+                         double snap) {
   std::vector<Vector2> below, above;
   for (const ProfileFacet& facet : profile) {
     std::array<double, 3> height{};
@@ -201,7 +202,7 @@ class SectorCutter {
   // Lines that may cut a profile: in even directions and distances, and at the corners of its
   // largest facets, along and across them.
   std::vector<ProfileLine> ListLines(const Piece& piece, const Meridian& meridian,
-                              const std::vector<ProfileFacet>& profile) const {
+                                     const std::vector<ProfileFacet>& profile) const {
     std::vector<ProfileLine> lines;
     constexpr int kDirections = 8, kAcross = 7;
     for (int d = 0; d < kDirections; ++d) {

@@ -38,7 +38,8 @@ std::string BodyColumns(const WorldState& state) {
 void AppendFingerNames(std::string& header, int finger) {
   const std::string prefix = std::string(kFingerNames[finger]) + '_';
   header.append(",").append(prefix).append("on");
-  for (const char* stem : {"p_OC", "n_OC", "target_W", "f_W"}) AppendVectorNames(header, prefix + stem);
+  for (const char* stem : {"p_OC", "n_OC", "target_W", "f_W"})
+    AppendVectorNames(header, prefix + stem);
 }
 
 void AppendFinger(std::string& row, const FingertipState& finger) {

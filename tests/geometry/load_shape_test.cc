@@ -128,6 +128,7 @@ TEST(ReadInChildTest, AReaderThatLoopsOrWaitsOrSwellsIsEnded) {
                 []() -> TriangleMesh {
                   for (volatile bool on = true; on;) {
                   }
+                  return {};
                 },
                 limits),
             slow);

@@ -150,7 +150,9 @@ TEST_F(WayTest, WhatIsCalledClearIsClearAtEveryMomentAndWhatIsBlockedIsNot) {
       ASSERT_TRUE(result.worst.has_value());
       EXPECT_LT(result.worst->distance, 0.0) << i;
     }
-    if (least < -kWayResolution) EXPECT_FALSE(result.clear) << i;
+    if (least < -kWayResolution) {
+      EXPECT_FALSE(result.clear) << i;
+    }
   }
   EXPECT_GE(clear, 5);
   EXPECT_GE(blocked, 5);
