@@ -182,6 +182,7 @@ void FrameShot(lua_State* L, LuaFrame& frame, const ShotOptions& options) {
 
 int FrameNumber(LuaFrame& frame) { return frame.facts().frame; }
 double FrameTime(LuaFrame& frame) { return frame.node->facts.t; }
+double FrameSimulatedTime(LuaFrame& frame) { return frame.facts().simulated_t; }
 std::string FramePhase(LuaFrame& frame) { return frame.facts().phase; }
 std::string FrameLoosened(LuaFrame& frame) { return frame.facts().loosened; }
 bool FrameFailed(LuaFrame& frame) { return frame.facts().failed; }
@@ -278,6 +279,7 @@ const ClassInfo& FrameClass() {
                               {
                                   Property<&FrameNumber>("number"),
                                   Property<&FrameTime>("t"),
+                                  Property<&FrameSimulatedTime>("simulated_t"),
                                   Property<&FramePhase>("phase"),
                                   Property<&FrameLoosened>("loosened"),
                                   Property<&FrameFailed>("failed"),

@@ -2,27 +2,35 @@
 
 #include <algorithm>
 
+#include "app/core/check.h"
 #include "app/core/error.h"
 #include "app/job/apply_stages.h"
 
 namespace pregrasp::internal {
 namespace {
 
-// The world at a frame: the bodies where the task has them, the fingers where the hand has its
-// tips.
-WorldState StateOfFrame(const Application& a, const MotionFrameTask& task) {
-  WorldState state = a.next.start;
+// The simulated row that a frame shows: of the certified trajectory, then of the lift.
+const TraceRow& RowOfFrame(const JobState& state, const MotionFrameTask& task) {
+  const std::vector<TraceRow>& plan = state.certificate->trace;
+  const std::vector<TraceRow>& lift = state.lifts.at(state.chosen_grasp)->trace;
+  const std::vector<TraceRow>& rows = task.simulated_t <= plan.back().state.t ? plan : lift;
+  const auto row = std::lower_bound(rows.begin(), rows.end(), task.simulated_t,
+                                    [](const TraceRow& one, double t) { return one.state.t < t; });
+  PREGRASP_CHECK(row != rows.end() && row->state.t == task.simulated_t, task.simulated_t);
+  return *row;
+}
+
+// The world at a frame: the bodies where the simulation has them, of its fingers those that the
+// hand has on.
+WorldState StateOfFrame(const TraceRow& row, const MotionFrameTask& task) {
+  WorldState state = row.state;
   state.t = task.t;
-  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    const RigidTransform& X_WB =
-        task.X_WB[a.job.world().body_index(MovableIndex{static_cast<int>(i)}).value];
-    state.bodies[i].q_WB = Quaternion(X_WB.linear());
-    state.bodies[i].p_WB = X_WB.translation();
-  }
   const RigidTransform X_WO = state.bodies.front().X_WB();
   for (int f = 0; f < kNumFingers; ++f) {
     const Placement::Contact& contact = task.contacts[f];
     FingertipState& tip = state.fingers[f];
+    if (contact.on && tip.on) continue;
+    tip = {};  // lifted, or put on at the end of this step
     tip.on = tip.touching = contact.on;
     if (!contact.on) continue;
     tip.p_OC = contact.p_OC;
@@ -34,7 +42,8 @@ WorldState StateOfFrame(const Application& a, const MotionFrameTask& task) {
 
 void SetFrameFacts(Application& a, const MotionFrameTask& task, const MotionFrame& solved,
                    int frame, int keyframe) {
-  SetWorldFacts(a.facts, a.job.world(), StateOfFrame(a, task), {});
+  const TraceRow& row = RowOfFrame(a.next, task);
+  SetWorldFacts(a.facts, a.job.world(), StateOfFrame(row, task), row.contacts);
   FrameFacts facts;
   facts.path = a.next.path->rank;
   facts.grasp = a.next.chosen_grasp;
@@ -46,6 +55,7 @@ void SetFrameFacts(Application& a, const MotionFrameTask& task, const MotionFram
   facts.way_clear = solved.way_clear;
   facts.tip_error_mm = 1e3 * solved.tip_error;
   facts.clearance_mm = 1e3 * solved.clearance;
+  facts.simulated_t = task.simulated_t;
   facts.hand = MakeHandFacts(solved.configuration);
   for (int f = 0; f < kNumFingers; ++f) {
     const Placement::Contact& contact = task.contacts[f];

@@ -613,6 +613,7 @@ struct FrameFacts {
   bool failed = false;
   bool way_clear = true;  ///< the way from the frame before is free of overlap
   double tip_error_mm = 0.0, clearance_mm = 0.0;
+  double simulated_t = 0.0;  ///< of the row of rollout.csv or lift.csv that it shows [s]
   HandFacts hand;
   std::vector<PlaceFacts> touching;
 
@@ -628,6 +629,7 @@ struct FrameFacts {
     visit("way_clear", self.way_clear);
     visit("tip_error_mm", self.tip_error_mm);
     visit("clearance_mm", self.clearance_mm);
+    visit("simulated_t", self.simulated_t);
     visit("hand", self.hand);
     visit("touching", self.touching);
   }

@@ -104,6 +104,7 @@ class TaskBuilder {
   void Add(MotionPhase phase, const WorldState& state, const Contacts& contacts) {
     MotionFrameTask frame;
     frame.t = static_cast<double>(task_.frames.size()) / task_.fps;
+    frame.simulated_t = state.t;
     frame.phase = phase;
     frame.X_WB = world_.GetPoses(state);
     frame.contacts = contacts;

@@ -18,6 +18,8 @@ const char* MotionPhaseName(MotionPhase phase);
 /// What the hand has to do at one moment of the animation.
 struct MotionFrameTask {
   double t = 0.0;  ///< [s]
+  double simulated_t =
+      0.0;  ///< of the simulated row that it shows, as in rollout.csv, lift.csv [s]
   MotionPhase phase = MotionPhase::kApproach;
   std::vector<RigidTransform> X_WB;                        ///< of the scene's bodies
   std::array<Placement::Contact, kNumFingers> contacts{};  ///< on the object, in its frame

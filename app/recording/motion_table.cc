@@ -100,6 +100,7 @@ MotionRecord ReadRow(const std::string& where, const std::string& line) {
   record.clearance_mm = fields.NextNumber();
   record.tip_error_mm = fields.NextNumber();
   record.rung = static_cast<LooseningRung>(fields.NextChoice(kNumLooseningRungs - 1));
+  record.simulated_t = fields.NextNumber();
   fields.ExpectEnd();
   return record;
 }
@@ -112,7 +113,7 @@ std::string MotionHeader() {
   AppendPoseNames(header, "H");
   for (const char* joint : kHandJointNames) header.append(",").append(joint);
   for (const char* finger : kFingerNames) header.append(",").append(finger).append("_on");
-  return header + ",phase,clearance_mm,tip_error_mm,loosened\n";
+  return header + ",phase,clearance_mm,tip_error_mm,loosened,simulated_t\n";
 }
 
 std::string MotionRow(const MotionFrameTask& task, const MotionFrame& frame) {
@@ -126,6 +127,7 @@ std::string MotionRow(const MotionFrameTask& task, const MotionFrame& frame) {
   AppendCell(row, 1e3 * frame.tip_error);
   row.append(",").append(
       std::to_string(static_cast<int>(frame.failed() ? LooseningRung::kFailed : frame.rung)));
+  AppendCell(row, task.simulated_t);
   return row + '\n';
 }
 

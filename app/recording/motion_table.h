@@ -12,7 +12,8 @@ namespace pregrasp {
 /// The first line of motion.csv, with its line break: t; p_WO_*, q_WO_* (w, x, y, z); p_WH_*,
 /// q_WH_*; the 22 joint angles [rad] by the hand's names; FINGER_on (0 or 1) for all five; phase
 /// (MotionPhaseName); then clearance_mm, tip_error_mm, and loosened, the rung of the ladder as a
-/// number (0 none, 6 failed).
+/// number (0 none, 6 failed); simulated_t, the time of the row of rollout.csv, or past its end of
+/// lift.csv, whose poses the line has: it stands still while only the hand moves.
 std::string MotionHeader();
 
 /// One line of it.
@@ -27,6 +28,7 @@ struct MotionRecord {
   MotionPhase phase = MotionPhase::kApproach;
   double clearance_mm = 0.0, tip_error_mm = 0.0;
   LooseningRung rung = LooseningRung::kNone;
+  double simulated_t = 0.0;  ///< [s]
 };
 
 /// All lines of a motion.csv. @throws InputError with the file, its line and what was expected.

@@ -766,6 +766,7 @@ function Motion:shot(options) end
 ---@class Frame
 ---@field number integer from 1, in time; of a keyframe, before free parts are given their time
 ---@field t number [s]
+---@field simulated_t number of the row of rollout.csv, then of lift.csv, that it shows [s]
 ---@field phase string "approach", "contact", "transit" (between contact stages no finger touches), "closing" or "lift"
 ---@field loosened string what it gave up: "none", or the rung of the ladder
 ---@field failed boolean no pose, or a way to it that goes through something

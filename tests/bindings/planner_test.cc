@@ -309,11 +309,28 @@ TEST_F(PlannerScriptTest, AFinishedMotionIsTheRuns) {
     for _ in m:frames() do end
     s:save())"));
   const LoadedRun run = LoadRun(folder_.path() / "out/cube");
-  int failed = 0;
+  int failed = 0, lifting = 0;
+  double simulated_t = 0.0;
   for (const StepFacts& step : run.steps) {
     const auto* frame = std::get_if<FrameFacts>(&step.details);
-    failed += frame != nullptr && step.command.verb == Verb::kFrame && frame->failed ? 1 : 0;
+    if (frame == nullptr || step.command.verb != Verb::kFrame) continue;
+    failed += frame->failed ? 1 : 0;
+    EXPECT_GE(frame->simulated_t, simulated_t);  // while it stands still, only the hand moves
+    simulated_t = frame->simulated_t;
+    if (frame->phase == "contact") {
+      EXPECT_FALSE(step.contacts.empty());  // with what it lies on
+    }
+    if (frame->phase != "lift") continue;
+    ++lifting;
+    double upward = 0.0;
+    for (const FingerFacts& finger : step.fingers) {
+      EXPECT_TRUE(finger.on || finger.f_W.isZero());
+      upward += finger.f_W.z();
+    }
+    EXPECT_GT(upward, 0.0) << step.id;
   }
+  EXPECT_GT(lifting, 0);
+  EXPECT_GT(simulated_t, 1.0);
   EXPECT_EQ(run.summary.motion.failed, failed);
   EXPECT_EQ(run.summary.grasps.tried, 4);
   EXPECT_GT(run.summary.wrench.min_normal_N, 0.49);

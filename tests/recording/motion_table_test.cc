@@ -14,6 +14,7 @@ namespace {
 TEST(MotionTableTest, ARowHasAFieldForEveryNameOfTheHeader) {
   MotionFrameTask task;
   task.t = 0.5;
+  task.simulated_t = 0.25;
   task.phase = MotionPhase::kTransit;
   task.X_WB = {MakeTransform(Matrix3::Identity(), Vector3(1.0, 2.0, 3.0))};
   task.contacts[1].on = true;
@@ -26,8 +27,8 @@ TEST(MotionTableTest, ARowHasAFieldForEveryNameOfTheHeader) {
   EXPECT_EQ(header.rfind("t,p_WO_x,p_WO_y,p_WO_z,q_WO_w,", 0), 0U);
   EXPECT_NE(header.find(",FFJ4,FFJ3,"), std::string::npos);
   EXPECT_EQ(row.rfind("0.5,1,2,3,1,0,0,0,0,0,0,1,", 0), 0U) << row;
-  // flags, phase, clearance_mm, tip_error_mm, loosened
-  const std::string tail = ",0,1,0,0,0,transit,2,0,2\n";
+  // flags, phase, clearance_mm, tip_error_mm, loosened, simulated_t
+  const std::string tail = ",0,1,0,0,0,transit,2,0,2,0.25\n";
   EXPECT_EQ(row.substr(row.size() - tail.size()), tail) << row;
 }
 
@@ -39,6 +40,7 @@ class MotionTableReadTest : public ::testing::Test {
   static std::string Row() {
     MotionFrameTask task;
     task.t = 1.0 / 3.0;
+    task.simulated_t = 0.7;
     task.phase = MotionPhase::kClosing;
     task.X_WB = {
         MakeTransform(Quaternion(Eigen::AngleAxisd(2.5, Vector3(1.0, 2.0, 3.0).normalized())),
@@ -87,6 +89,7 @@ TEST_F(MotionTableReadTest, WhatWasWrittenIsReadBack) {
   EXPECT_EQ(record.clearance_mm, 1.25);
   EXPECT_EQ(record.tip_error_mm, 0.25);
   EXPECT_EQ(record.rung, LooseningRung::kFailed);
+  EXPECT_EQ(record.simulated_t, 0.7);
 }
 
 TEST_F(MotionTableReadTest, WhatIsNoMotionIsRefusedWithItsLine) {
@@ -101,7 +104,8 @@ TEST_F(MotionTableReadTest, WhatIsNoMotionIsRefusedWithItsLine) {
   EXPECT_NE(ErrorOf(MotionHeader() + row.substr(0, row.rfind(','))), "");
   EXPECT_NE(ErrorOf(MotionHeader() + row.substr(0, row.size() - 1) + ",0\n"), "");
   EXPECT_NE(ErrorOf(MotionHeader() + replaced(",closing,1.25", ",closing,nan")), "");
-  EXPECT_NE(ErrorOf(MotionHeader() + row.substr(0, row.rfind(',')) + ",7\n"), "");
+  EXPECT_NE(ErrorOf(MotionHeader() + replaced(",6,0.7", ",7,0.7")), "");  // no such rung
+  EXPECT_NE(ErrorOf(MotionHeader() + replaced(",6,0.7", ",6,soon")), "");
 }
 
 }  // namespace
