@@ -14,6 +14,7 @@
 #include "app/core/gzip.h"
 #include "app/training/dataset_run.h"
 #include "app/training/evaluation_scenes.h"
+#include "app/training/object_folder.h"
 #include "app/training/packed_states.h"
 #include "bindings/scene_file.h"
 
@@ -160,6 +161,10 @@ void ItemOptions::AddTo(const Subcommand& command) {
   command.Add("--exclude", excluded,
               "Scenes whose objects no training object may resemble; without this option, "
               "all evaluation scenes");
+  command.Add(
+      "--objects", objects,
+      "Folder of meshes to take in turn instead of random household objects; an objects.csv "
+      "there says file, category, mass_kg, quality");
 }
 
 void ItemOptions::AddLabelsTo(const Subcommand& command) {
@@ -178,6 +183,19 @@ ItemConfig ItemOptions::Resolve() const {
     const Scene scene = LoadSceneFile(file, settings);
     resolved.excluded.emplace_back(scene.name, scene.object().shape);
   }
+  if (objects.empty()) return resolved;
+  std::vector<TrainingObject> kept;
+  for (TrainingObject& object : ReadObjectFolder(objects)) {
+    if (ResemblesAny(object.shape, resolved.excluded)) {
+      fmt::print("left out, as it resembles an object of a scene: {}\n", object.name);
+      continue;
+    }
+    kept.push_back(std::move(object));
+  }
+  if (kept.empty()) {
+    throw InputError("--objects", "", "a mesh unlike the objects of scenes", objects.string());
+  }
+  resolved.objects = std::make_shared<const std::vector<TrainingObject>>(std::move(kept));
   return resolved;
 }
 

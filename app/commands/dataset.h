@@ -12,12 +12,14 @@ namespace pregrasp {
 struct ItemOptions {
   ItemConfig config;
   std::vector<std::filesystem::path> excluded;
+  std::filesystem::path objects;
 
   void AddTo(const Subcommand& command);
   void AddLabelsTo(const Subcommand& command);
 
-  /// The configuration with the excluded objects: those of the scenes named, else of all
-  /// evaluation scenes. @throws InputError.
+  /// The configuration with the excluded objects, those of the scenes named, else of all
+  /// evaluation scenes; and with the meshes of `objects` that resemble none of them, whose others
+  /// are named on the terminal. @throws InputError.
   ItemConfig Resolve() const;
 };
 

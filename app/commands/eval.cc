@@ -17,6 +17,7 @@
 #include "app/job/planner_settings.h"
 #include "app/studies/eval.h"
 #include "app/studies/report.h"
+#include "app/training/object_folder.h"
 #include "bindings/ladder_file.h"
 #include "bindings/scene_file.h"
 
@@ -29,7 +30,7 @@ struct EvalOptions {
   std::string study = "table1", scenes = "all", shard = "1/1";
   int seeds = 3;
   std::uint64_t first_seed = 1;
-  fs::path out, weights;
+  fs::path out, weights, objects;
   RunConfig run;
   int threads = 0;
   std::vector<std::string> settings;
@@ -118,6 +119,13 @@ EvalConfig MakeConfig(const EvalOptions& options) {
   setup.run = options.run;
   setup.threads = options.threads;
   setup.weights = options.weights.empty() ? DataFolder() / "assets" / "weights" : options.weights;
+  if (!options.objects.empty()) {
+    if (!FindStudy(options.study).takes_objects) {
+      throw InputError("--objects", "", "--study learning, which judges networks by them",
+                       options.study);
+    }
+    setup.objects = ReadObjectFolder(options.objects);
+  }
   if (options.keep_runs) setup.runs = options.out / "runs";
   std::vector<Setting> settings;
   for (const std::string& setting : options.settings) settings.push_back(ParseSetting(setting));
@@ -182,6 +190,9 @@ void AddEval(const Subcommand& app, Action& action) {
   eval.Add("--set", options->settings, "Change a value of every scene or of the planner, as in run")
       .OneAtATime();
   eval.Add("--weights", options->weights, "Folder of the networks' weights");
+  eval.Add("--objects", options->objects,
+           "Folder of meshes that the study learning judges the networks by, too; an objects.csv "
+           "there says file, category, mass_kg, quality");
   eval.AddFlag("--keep-runs", options->keep_runs, "Keep each item's run directory in OUT/runs");
 
   // Whichever of the command and its parts is read last, a part that was named is what is done.

@@ -13,6 +13,7 @@
 #include "app/recording/build_info.h"
 #include "app/recording/manifest.h"
 #include "app/recording/scene_file.h"
+#include "app/training/make_item.h"
 
 namespace pregrasp {
 namespace {
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kItemExtension = ".json";
+constexpr const char* kRecordExtension = ".json";
 
 // A folder for what is written to be hashed, removed with it.
 class ScratchFolder {
@@ -94,6 +95,11 @@ std::string Describe(const EvalConfig& config, std::int64_t items) {
                                {"scene", HashScene(ladder.scene)},
                                {"poses", DescribePoses(ladder)}});
   }
+  if (!setup.objects.empty()) {
+    ItemConfig items;
+    items.objects = std::make_shared<const std::vector<TrainingObject>>(setup.objects);
+    json["objects"] = Json::parse(items.ToJson()).at("objects");
+  }
   json["settings"] = PlannerSettings(setup.planner);
   return FormatJson(json);
 }
@@ -130,7 +136,7 @@ bool RunEval(const EvalConfig& config, const std::function<void(const EvalProgre
   BatchRun run;
   run.items = study->num_items();
   run.shard = config.shard;
-  const ItemFolder folder(config.out / "items", Describe(config, run.items), kItemExtension);
+  const ItemFolder folder(config.out / "items", Describe(config, run.items), kRecordExtension);
   std::string made;
   RunItems(
       run, folder,
@@ -155,7 +161,7 @@ void MergeEval(const std::vector<fs::path>& folders, const fs::path& out) {
   std::vector<fs::path> sources;
   sources.reserve(folders.size());
   for (const fs::path& folder : folders) sources.push_back(folder / "items");
-  const ItemFolders from(sources, kItemExtension, "study");
+  const ItemFolders from(sources, kRecordExtension, "study");
   const nlohmann::json description =
       ParseJson(from.description(), (sources[0] / "description.json").string());
   const JsonReader fields(description, sources[0].string());
@@ -168,7 +174,7 @@ void MergeEval(const std::vector<fs::path>& folders, const fs::path& out) {
     texts.push_back(ReadWholeFile(file));
     items.push_back(ParseJson(texts.back(), file.string()));
   }
-  const ItemFolder folder(out / "items", from.description(), kItemExtension);
+  const ItemFolder folder(out / "items", from.description(), kRecordExtension);
   for (std::int64_t i = 0; i < count; ++i) WriteWholeFile(folder.PathOf(i), texts[i]);
   WriteTables(info, items, out);
 }

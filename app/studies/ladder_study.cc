@@ -111,6 +111,7 @@ StudyInfo LadderStudy() {
           "known motions of tests/ladders, pose by pose: score, generator, search, lift; MPPI with "
           "their progress as score",
           true,
+          false,
           [](const StudySetup& setup) -> std::unique_ptr<Study> {
             return std::make_unique<LadderItems>(setup);
           },

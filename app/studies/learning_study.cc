@@ -1,15 +1,18 @@
 // The networks on what they never saw: the score on labels of families held out and on the ladders'
-// poses, the generators on new objects of these families, and what the score costs.
+// poses, the generators on new objects of these families, what the score costs, and both on meshes
+// that the user gives.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "app/core/data_folder.h"
 #include "app/core/json_text.h"
 #include "app/studies/learning_trials.h"
 #include "app/studies/table_text.h"
+#include "app/training/make_item.h"
 #include "app/training/metrics.h"
 
 namespace pregrasp {
@@ -17,17 +20,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kObjects = 3;  // of each family held out and seed
+constexpr int kObjects = 3;       // of each family held out and seed
+constexpr int kMeshesOfItem = 4;  // which are labelled in parallel
 constexpr std::array<const char*, 3> kCaseNames{"thumb", "index", "both"};
 
-// Items: the labels, the score's speed, objects by family, number and seed, ladders by seed.
+// Items: the labels, the score's speed, objects by family, number and seed, ladders by seed,
+// meshes.
 class LearningItems : public Study {
  public:
   explicit LearningItems(const StudySetup& setup)
-      : setup_(setup), families_(ReadHeldOutFamilies(setup.weights)) {}
+      : setup_(setup), families_(ReadHeldOutFamilies(setup.weights)) {
+    if (setup.objects.empty()) return;
+    meshes_ = std::make_shared<const std::vector<TrainingObject>>(setup.objects);
+  }
 
   std::int64_t num_items() const override {
-    return 2 + (num_objects() + std::ssize(setup_.ladders)) * setup_.seeds;
+    return 2 + (num_objects() + std::ssize(setup_.ladders) + num_mesh_items()) * setup_.seeds;
   }
 
   Json MakeItem(std::int64_t index) const override {
@@ -46,31 +54,91 @@ class LearningItems : public Study {
     index /= setup_.seeds;
     if (index < num_objects()) {
       ThreadPool pool(setup_.threads);
-      return record("object", TryGenerator(families_[index / kObjects], index % kObjects, seed,
-                                           setup_.weights, pool));
+      const std::int64_t item = ItemOfFamily(families_[index / kObjects], index % kObjects);
+      return record("object", TryGenerator(nullptr, item, seed, setup_.weights, pool));
     }
-    return record("ladder", ProbeLadder(setup_.ladders[index - num_objects()], seed, setup_));
+    index -= num_objects();
+    if (index < std::ssize(setup_.ladders)) {
+      return record("ladder", ProbeLadder(setup_.ladders[index], seed, setup_));
+    }
+    index -= std::ssize(setup_.ladders);
+    const std::int64_t begin = index * kMeshesOfItem;
+    ThreadPool pool(setup_.threads);
+    return record("meshes", JudgeObjects(meshes_, begin,
+                                         std::min(begin + kMeshesOfItem, std::ssize(*meshes_)),
+                                         seed, setup_.weights, pool));
   }
 
  private:
   std::int64_t num_objects() const { return kObjects * std::ssize(families_); }
+  std::int64_t num_mesh_items() const {
+    return (std::ssize(setup_.objects) + kMeshesOfItem - 1) / kMeshesOfItem;
+  }
 
   StudySetup setup_;
   std::vector<std::string> families_;
+  LearningObjects meshes_;
 };
 
-// Of the objects' items: the share of samples of these cases for which `key` counts.
-double CalcShare(const std::vector<nlohmann::json>& items, const char* source,
+// Of what TryGenerator said of objects: the share of samples of these cases for which `key` counts.
+double CalcShare(const std::vector<nlohmann::json>& objects, const char* source,
                  std::initializer_list<const char*> cases, const char* key) {
   double samples = 0.0, counted = 0.0;
-  for (const nlohmann::json& item : items) {
-    if (item.at("kind") != "object") continue;
+  for (const nlohmann::json& object : objects) {
     for (const char* one : cases) {
-      samples += item.at(source).at(one).at("samples").get<double>();
-      counted += item.at(source).at(one).at(key).get<double>();
+      samples += object.at(source).at(one).at("samples").get<double>();
+      counted += object.at(source).at(one).at(key).get<double>();
     }
   }
   return samples > 0.0 ? counted / samples : 0.0;
+}
+
+// As the planner asks for samples, of single draws, and of random points; refined and not.
+void AddGeneratorShares(const std::vector<nlohmann::json>& objects, Json& summary) {
+  for (const char* source : {"generator", "single_draw", "random"}) {
+    for (const auto& [suffix, key] : {std::pair("", "feasible"), std::pair("_raw", "raw")}) {
+      summary[fmt::format("{}_both{}", source, suffix)] = CalcShare(objects, source, {"both"}, key);
+      summary[fmt::format("{}_single{}", source, suffix)] =
+          CalcShare(objects, source, {"thumb", "index"}, key);
+    }
+  }
+  summary["generator_overlapping"] =
+      CalcShare(objects, "generator", {"thumb", "index", "both"}, "overlapping");
+}
+
+// What the score says of the labels of meshes.
+class MeshLabels {
+ public:
+  void Add(const nlohmann::json& object) {
+    constexpr std::array kLists{"truth", "score", "lifted", "probability"};
+    for (std::size_t list = 0; list < kLists.size(); ++list) {
+      for (const double value : object.at(kLists[list])) lists_[list].push_back(value);
+    }
+  }
+  Json ToJson() const { return JudgeLists(lists_[0], lists_[1], lists_[2], lists_[3]); }
+
+ private:
+  std::array<std::vector<double>, 4> lists_;
+};
+
+// Of the user's meshes, the same as of our own objects: learning.json's "objects".
+Json SummariseMeshes(const std::vector<nlohmann::json>& objects) {
+  MeshLabels all;
+  std::map<std::string, MeshLabels> families;
+  for (const nlohmann::json& object : objects) {
+    all.Add(object);
+    families[object.at("family").get<std::string>()].Add(object);
+  }
+  const Json facts = all.ToJson();
+  Json summary{{"objects", objects.size()},
+               {"score_r2", facts.at("r2")},
+               {"score_rank", facts.at("rank")},
+               {"score_auc", facts.at("auc")},
+               {"calibration", facts.at("calibration")},
+               {"labels", facts.at("labels")}};
+  AddGeneratorShares(objects, summary);
+  for (const auto& [family, labels] : families) summary["families"][family] = labels.ToJson();
+  return summary;
 }
 
 // How the score of the best placements goes along a ladder with what searches say of them: rank
@@ -100,35 +168,61 @@ std::string NumberText(const Json& value) {
   return value.is_null() ? "-" : fmt::format("{:.2f}", value.get<double>());
 }
 
+const std::vector<std::string> kFamilyColumns{"family", "labels", "R2",
+                                              "rank",   "AUC",    "calibration"};
+
+std::vector<std::string> FamilyRow(const std::string& name, const Json& facts) {
+  return {name,
+          std::to_string(facts.at("labels").get<int>()),
+          NumberText(facts.at("r2")),
+          NumberText(facts.at("rank")),
+          NumberText(facts.at("auc")),
+          NumberText(facts.at("calibration"))};
+}
+
+std::string TabulateMeshes(const Json& summary) {
+  std::vector<std::vector<std::string>> rows = {kFamilyColumns};
+  for (const auto& [family, facts] : summary.at("families").items()) {
+    rows.push_back(FamilyRow(family, facts));
+  }
+  rows.push_back({"all", std::to_string(summary.at("labels").get<int>()),
+                  NumberText(summary.at("score_r2")), NumberText(summary.at("score_rank")),
+                  NumberText(summary.at("score_auc")), NumberText(summary.at("calibration"))});
+  return fmt::format(
+      "On {} meshes that were given, labelled by searches in scenes of their own:\n\n{}\nOf the "
+      "generator's samples {:.2f} are feasible with both fingers given, {:.2f} with one.\n\n",
+      summary.at("objects").get<int>(), MarkdownTable(rows),
+      summary.at("generator_both").get<double>(), summary.at("generator_single").get<double>());
+}
+
 StudyFiles TabulateLearning(const std::vector<nlohmann::json>& items) {
   const nlohmann::json& score = items.at(0);
   Json summary{{"score_r2", score.at("all").at("r2")},
                {"score_rank", score.at("all").at("rank")},
                {"score_auc", score.at("all").at("auc")},
                {"calibration", score.at("all").at("calibration")}};
-  // As the planner asks for samples, of single draws, and of random points; refined and not.
-  for (const char* source : {"generator", "single_draw", "random"}) {
-    for (const auto& [suffix, key] : {std::pair("", "feasible"), std::pair("_raw", "raw")}) {
-      summary[fmt::format("{}_both{}", source, suffix)] = CalcShare(items, source, {"both"}, key);
-      summary[fmt::format("{}_single{}", source, suffix)] =
-          CalcShare(items, source, {"thumb", "index"}, key);
-    }
+  std::vector<nlohmann::json> objects, meshes;
+  for (const nlohmann::json& item : items) {
+    if (item.at("kind") == "object") objects.push_back(item);
+    if (item.at("kind") != "meshes") continue;
+    for (const nlohmann::json& mesh : item.at("objects")) meshes.push_back(mesh);
   }
-  summary["generator_overlapping"] =
-      CalcShare(items, "generator", {"thumb", "index", "both"}, "overlapping");
+  AddGeneratorShares(objects, summary);
   summary["ms_128x3"] = 1e3 * items.at(1).at("seconds").get<double>();
-  std::vector<std::vector<std::string>> families = {
-      {"family", "labels", "R2", "rank", "AUC", "calibration"}};
-  const auto add_family = [&](const std::string& name, const nlohmann::json& facts) {
-    families.push_back({name, std::to_string(facts.at("labels").get<int>()),
-                        NumberText(facts.at("r2")), NumberText(facts.at("rank")),
-                        NumberText(facts.at("auc")), NumberText(facts.at("calibration"))});
+  std::vector<std::vector<std::string>> families = {kFamilyColumns};
+  const auto add_family = [&](const std::string& name, const Json& facts) {
+    families.push_back(FamilyRow(name, facts));
   };
   for (const auto& [family, facts] : score.at("families").items()) {
     add_family(family, facts);
     summary["families"][family] = facts;
   }
   for (const char* part : {"held", "not_held", "all"}) add_family(part, score.at(part));
+  std::string meshes_text;
+  if (!meshes.empty()) {
+    summary["objects"] = SummariseMeshes(meshes);
+    meshes_text = TabulateMeshes(summary["objects"]);
+  }
 
   std::vector<std::vector<std::string>> ladders = {{"ladder", "thumb", "index", "both", "all"}};
   std::vector<std::vector<std::string>> poses = {
@@ -155,14 +249,15 @@ StudyFiles TabulateLearning(const std::vector<nlohmann::json>& items) {
       }
     }
   }
-  return {{"learning.json", FormatJsonIndented(summary)},
-          {"learning.md",
-           fmt::format(
-               "The score on labels of families that it never saw:\n\n{}\nRank correlation, along "
-               "each ladder, of the score of the tenth of placements that scores best\nwith the "
-               "truth of these (the share of reliefs at which a search has a grasp with "
-               "them):\n\n{}\nPose by pose:\n\n{}",
-               MarkdownTable(families), MarkdownTable(ladders), MarkdownTable(poses))}};
+  return {
+      {"learning.json", FormatJsonIndented(summary)},
+      {"learning.md",
+       fmt::format(
+           "The score on labels of families that it never saw:\n\n{}\n{}Rank correlation, along "
+           "each ladder, of the score of the tenth of placements that scores best\nwith the "
+           "truth of these (the share of reliefs at which a search has a grasp with "
+           "them):\n\n{}\nPose by pose:\n\n{}",
+           MarkdownTable(families), meshes_text, MarkdownTable(ladders), MarkdownTable(poses))}};
 }
 
 std::string DescribeLearningItem(const nlohmann::json& item) {
@@ -174,6 +269,7 @@ std::string DescribeLearningItem(const nlohmann::json& item) {
   if (kind == "speed") {
     return fmt::format("speed: {:.1f} ms", 1e3 * item.at("seconds").get<double>());
   }
+  if (kind == "meshes") return fmt::format("{} meshes", item.at("objects").size());
   if (kind == "object") return fmt::format("object {}", item.at("object").get<std::string>());
   return fmt::format("ladder {}: {} poses", item.at("ladder").get<std::string>(),
                      item.at("poses").size());
@@ -184,6 +280,7 @@ std::string DescribeLearningItem(const nlohmann::json& item) {
 StudyInfo LearningStudy() {
   return {"learning",
           "the networks on labels, objects and ladders they were not trained on",
+          true,
           true,
           [](const StudySetup& setup) -> std::unique_ptr<Study> {
             return std::make_unique<LearningItems>(setup);

@@ -22,6 +22,7 @@
 #include "app/training/make_item.h"
 #include "app/training/metrics.h"
 #include "app/training/search_labels.h"
+#include "app/training/state_item.h"
 #include "app/training/training_data.h"
 
 namespace pregrasp {
@@ -33,8 +34,9 @@ using Json = nlohmann::ordered_json;
 constexpr int kNumCases = 3;  // thumb, index, both: GeneratorOf's order
 constexpr int kGraspsOfObject = 6, kSamplesOfCondition = 4;
 constexpr int kContactsOfPose = 200;  // of each case
-constexpr int kPartsOfGrasp = 1000;   // streams
-constexpr double kHandSpan = 0.13;    // between contacts of one hand [m]
+constexpr const char* kScoreFile = "score.safetensors";
+constexpr int kPartsOfGrasp = 1000;  // streams
+constexpr double kHandSpan = 0.13;   // between contacts of one hand [m]
 
 // Of objects that no data set's items are.
 constexpr std::uint64_t kItemSeed = 0x6c6561726e;
@@ -48,44 +50,81 @@ ObjectState SeenIn(const ContextRecord& context) {
 
 // Labels beside the score's answers.
 struct Judged {
-  std::vector<double> progress, score, lifted, probability;
+  std::vector<double> truth, score, lifted, probability;
 
-  void Add(double truth, double s, bool is_lifted, double p) {
-    progress.push_back(truth);
+  void Add(double progress, double s, bool is_lifted, double p) {
+    truth.push_back(progress);
     score.push_back(s);
     lifted.push_back(is_lifted ? 1.0 : 0.0);
     probability.push_back(p);
   }
-  Json ToJson() const {
-    return {{"labels", progress.size()},
-            {"r2", CalcR2(progress, score)},
-            {"rank", CalcRankCorrelation(progress, score)},
-            {"auc", CalcAuc(lifted, probability)},
-            {"calibration", CalcCalibrationError(lifted, probability)}};
-  }
+  Json ToJson() const { return JudgeLists(truth, score, lifted, probability); }
 };
+
+// The score, asked about labels.
+class ScoreJudge {
+ public:
+  explicit ScoreJudge(const fs::path& weights) : ScoreJudge(ReadTensors(weights / kScoreFile)) {}
+
+  const std::vector<SetLevelConfig>& levels() const { return score_.encoder().config().levels; }
+  const char* progress() const { return by_room_ ? "room" : "relief"; }
+
+  // Visits (truth of progress, score, lifted, probability) of each label of the context.
+  template <typename Visit>
+  void Judge(const TrainingContext& context, const Visit& visit) const {
+    std::vector<PlanningContacts> contacts;
+    for (const TruthRecord* truth : context.truths) contacts.push_back(truth->contacts);
+    CloudStructure structure = *context.structure;
+    structure.R_WO0 = context.context->X_WO.linear();
+    const ObjectState state = SeenIn(*context.context);
+    const VectorX s = score_.ScoreContacts(structure, state, contacts, ScoreOutput::kProgress);
+    const VectorX p = score_.ScoreContacts(structure, state, contacts, ScoreOutput::kLifted);
+    for (Eigen::Index i = 0; i < s.size(); ++i) {
+      const TruthRecord& truth = *context.truths[i];
+      visit(by_room_ ? truth.room : truth.relief, s[i], truth.lifted, p[i]);
+    }
+  }
+
+ private:
+  explicit ScoreJudge(const TensorFile& file)
+      : score_(ScoreFunction::FromTensors(file)),
+        by_room_(TrainingOf(file).value("progress", "relief") == "room") {}
+
+  ScoreFunction score_;
+  bool by_room_;
+};
+
+TrainingData PrepareToJudge(std::shared_ptr<const Dataset> dataset, const ScoreJudge& judge,
+                            const std::vector<std::string>& families) {
+  return PrepareTrainingData(
+      std::move(dataset), judge.levels(), families,
+      [](const TrainingContext& context) { return !context.truths.empty(); });
+}
 
 // An object with nothing around it, turned at random as in training.
 struct FreeObject {
-  FreeObject(const std::string& family, std::int64_t number, std::uint64_t seed) {
-    const std::vector<std::string>& families = ObjectFamilies();
-    const auto at = std::find(families.begin(), families.end(), family) - families.begin();
-    index = at + number * std::ssize(families);
-    ItemConfig config;
-    config.seed = kItemSeed + seed;
+  FreeObject(const ItemConfig& config, std::int64_t index) {
     const SceneObject object = MakeItemObject(config, index);
     name = object.object.name;
+    family = object.object.family;
     cloud = MakeItemCloud(config, object, index);
     int tries = 0;
     do {
       scene = MakeItemScene(config, object, index, tries++).scene;
     } while (scene.bodies.size() > 1);
   }
-  std::int64_t index = 0;  // of its item
-  std::string name;
+  std::string name, family;
   PointCloud cloud;
   Scene scene;
 };
+
+// Of items that no data set has.
+ItemConfig UnseenItems(const LearningObjects& objects, std::uint64_t seed) {
+  ItemConfig config;
+  config.seed = kItemSeed + seed;
+  config.objects = objects;
+  return config;
+}
 
 // What a grasp gives to one of the generators, with nothing around the object.
 PlanningContacts GivenBy(const std::vector<GraspContact>& grasp, int which) {
@@ -169,7 +208,7 @@ Json FindBestTenth(const std::vector<TruthRecord>& truths, const VectorX& progre
 }  // namespace
 
 std::vector<std::string> ReadHeldOutFamilies(const fs::path& weights) {
-  const fs::path file = weights / "score.safetensors";
+  const fs::path file = weights / kScoreFile;
   const Json training = TrainingOf(ReadTensors(file));
   if (!training.contains("validation") || training["validation"].empty()) {
     throw InputError(file.string(), "training", "families that were held out", "none");
@@ -177,43 +216,71 @@ std::vector<std::string> ReadHeldOutFamilies(const fs::path& weights) {
   return training["validation"].get<std::vector<std::string>>();
 }
 
+Json JudgeLists(const std::vector<double>& truth, const std::vector<double>& score,
+                const std::vector<double>& lifted, const std::vector<double>& probability) {
+  return {{"labels", truth.size()},
+          {"r2", CalcR2(truth, score)},
+          {"rank", CalcRankCorrelation(truth, score)},
+          {"auc", CalcAuc(lifted, probability)},
+          {"calibration", CalcCalibrationError(lifted, probability)}};
+}
+
 Json JudgeScore(const fs::path& labels, const fs::path& weights) {
-  const TensorFile file = ReadTensors(weights / "score.safetensors");
-  const ScoreFunction score = ScoreFunction::FromTensors(file);
-  const bool by_room = TrainingOf(file).value("progress", "relief") == "room";
-  const TrainingData data =
-      PrepareTrainingData(std::make_shared<Dataset>(ReadDataset(labels)),
-                          score.encoder().config().levels, ReadHeldOutFamilies(weights),
-                          [](const TrainingContext& context) { return !context.truths.empty(); });
+  const ScoreJudge judge(weights);
+  const TrainingData data = PrepareToJudge(std::make_shared<Dataset>(ReadDataset(labels)), judge,
+                                           ReadHeldOutFamilies(weights));
   Judged all, held, not_held;
   std::map<std::string, Judged> families;
   for (const TrainingContext& context : data.validation) {
     ThrowIfInterrupted();
-    std::vector<PlanningContacts> contacts;
-    for (const TruthRecord* truth : context.truths) contacts.push_back(truth->contacts);
-    CloudStructure structure = *context.structure;
-    structure.R_WO0 = context.context->X_WO.linear();
-    const ObjectState state = SeenIn(*context.context);
-    const VectorX s = score.ScoreContacts(structure, state, contacts, ScoreOutput::kProgress);
-    const VectorX p = score.ScoreContacts(structure, state, contacts, ScoreOutput::kLifted);
     const bool pressed = context.context->kind.find("held") != std::string::npos;
-    for (Eigen::Index i = 0; i < s.size(); ++i) {
-      const TruthRecord& truth = *context.truths[i];
+    judge.Judge(context, [&](double truth, double s, bool lifted, double p) {
       for (Judged* judged : {&families[context.item->family], &all, pressed ? &held : &not_held}) {
-        judged->Add(by_room ? truth.room : truth.relief, s[i], truth.lifted, p[i]);
+        judged->Add(truth, s, lifted, p);
       }
-    }
+    });
   }
   Json by_family;
   for (const auto& [family, judged] : families) by_family[family] = judged.ToJson();
-  return {{"labels", data.dataset->hash},  {"progress", by_room ? "room" : "relief"},
-          {"all", all.ToJson()},           {"held", held.ToJson()},
-          {"not_held", not_held.ToJson()}, {"families", by_family}};
+  return {{"labels", data.dataset->hash}, {"progress", judge.progress()},  {"all", all.ToJson()},
+          {"held", held.ToJson()},        {"not_held", not_held.ToJson()}, {"families", by_family}};
 }
 
-Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t seed,
+Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64_t end,
+                  std::uint64_t seed, const fs::path& weights, ThreadPool& pool) {
+  StateItemConfig config;
+  config.item = UnseenItems(objects, seed);
+  config.item.scenes = 1;
+  std::vector<Dataset> found(end - begin);
+  pool.ParallelFor(static_cast<int>(found.size()),
+                   [&](int i, int) { found[i].items.push_back(MakeStateItem(config, begin + i)); });
+  const ScoreJudge judge(weights);
+  Json judged_objects = Json::array();
+  for (std::int64_t index = begin; index < end; ++index) {
+    ThrowIfInterrupted();
+    const auto dataset = std::make_shared<const Dataset>(std::move(found[index - begin]));
+    Judged judged;
+    if (!dataset->items.front().truths.empty()) {
+      const TrainingData data = PrepareToJudge(dataset, judge, {});
+      for (const TrainingContext& context : data.training) {
+        judge.Judge(context, [&](double truth, double s, bool lifted, double p) {
+          judged.Add(truth, s, lifted, p);
+        });
+      }
+    }
+    Json object = TryGenerator(objects, index, seed, weights, pool);
+    object["truth"] = judged.truth;
+    object["score"] = judged.score;
+    object["lifted"] = judged.lifted;
+    object["probability"] = judged.probability;
+    judged_objects.push_back(std::move(object));
+  }
+  return {{"objects", judged_objects}};
+}
+
+Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint64_t seed,
                   const fs::path& weights, ThreadPool& pool) {
-  const FreeObject object(family, number, seed);
+  const FreeObject object(UnseenItems(objects, seed), index);
   const GraspWorld world = MakeTrainingWorld(object.scene);
   const std::vector<RigidTransform> X_WB = world.StartPoses();
   const ContactPlaces places(world, X_WB);
@@ -227,7 +294,7 @@ Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t 
   GraspSearchConfig search;
   search.max_found = kGraspsOfObject;
   const auto draw = [&](int g, int part) {  // the third index is for refinement to split
-    return Rng(seed, RngStream::kProbedContacts, object.index, kPartsOfGrasp * g + part);
+    return Rng(seed, RngStream::kProbedContacts, index, kPartsOfGrasp * g + part);
   };
   const GraspSearchResult found =
       SearchGrasps(places, search, {}, draw(kGraspsOfObject, 0).NextU64(), pool);
@@ -262,7 +329,7 @@ Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t 
   complete(samples, generated);
   complete(single_draws, single);
   complete(points, random);
-  Json result{{"object", object.name}, {"family", family}, {"grasps", found.found.size()}};
+  Json result{{"object", object.name}, {"family", object.family}, {"grasps", found.found.size()}};
   for (int which = 0; which < kNumCases; ++which) {
     result["generator"][kGeneratorNames[which]] = generated[which].ToJson();
     result["single_draw"][kGeneratorNames[which]] = single[which].ToJson();
@@ -274,7 +341,7 @@ Json TryGenerator(const std::string& family, std::int64_t number, std::uint64_t 
 Json ProbeLadder(const Ladder& ladder, std::uint64_t seed, const StudySetup& setup) {
   Job job({ladder.scene, seed, setup.planner, setup.weights}, setup.threads);
   const auto planner = job.GetPlanner(job.world().InitialState(), setup.planner);
-  const ScoreFunction score = ScoreFunction::Load(setup.weights / "score.safetensors");
+  const ScoreFunction score = ScoreFunction::Load(setup.weights / kScoreFile);
   const PointCloud& cloud = planner->scorer().cloud();
   const CloudStructure structure =
       score.BuildStructure(cloud.P, ladder.scene.object().X_WB.linear());
@@ -315,8 +382,8 @@ Json ProbeLadder(const Ladder& ladder, std::uint64_t seed, const StudySetup& set
 
 double TimeScore(const fs::path& weights) {
   constexpr int kRollouts = 128, kStates = 3, kRepeats = 5;
-  const ScoreFunction score = ScoreFunction::Load(weights / "score.safetensors");
-  const FreeObject object(ObjectFamilies().front(), 0, 1);
+  const ScoreFunction score = ScoreFunction::Load(weights / kScoreFile);
+  const FreeObject object(UnseenItems(nullptr, 1), 0);
   const MatrixX3& P = object.cloud.P;
   const CloudStructure structure = score.BuildStructure(P, Matrix3::Identity());
   std::vector<ObjectState> states(kRollouts * kStates);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -9,8 +10,12 @@
 #include "app/core/thread_pool.h"
 #include "app/studies/ladder.h"
 #include "app/studies/study.h"
+#include "app/training/object_families.h"
 
 namespace pregrasp {
+
+/// Objects to judge networks by; null for random members of ObjectFamilies().
+using LearningObjects = std::shared_ptr<const std::vector<TrainingObject>>;
 
 /// The weights' own word on which families they never saw. @throws InputError if there is none.
 std::vector<std::string> ReadHeldOutFamilies(const std::filesystem::path& weights);
@@ -25,9 +30,23 @@ nlohmann::ordered_json JudgeScore(const std::filesystem::path& labels,
 /// space: for thumb, index and both the samples, those feasible as projected and after refinement,
 /// and those whose fingertips overlap; beside them the same of single draws, and of as many sets of
 /// random points, projected and refined likewise.
-nlohmann::ordered_json TryGenerator(const std::string& family, std::int64_t number,
+/// @param index  of an item that no data set has: of `objects`, or of ObjectFamilies() if null.
+nlohmann::ordered_json TryGenerator(const LearningObjects& objects, std::int64_t index,
                                     std::uint64_t seed, const std::filesystem::path& weights,
                                     ThreadPool& pool);
+
+/// The same of objects `begin` to `end` of `objects` and, beside it, labels that searches give them
+/// in a scene of each (as MakeStateItem's) with the score's answers: lists "truth", "score",
+/// "lifted", "probability".
+nlohmann::ordered_json JudgeObjects(const LearningObjects& objects, std::int64_t begin,
+                                    std::int64_t end, std::uint64_t seed,
+                                    const std::filesystem::path& weights, ThreadPool& pool);
+
+/// R2, rank correlation, AUC and calibration of such lists.
+nlohmann::ordered_json JudgeLists(const std::vector<double>& truth,
+                                  const std::vector<double>& score,
+                                  const std::vector<double>& lifted,
+                                  const std::vector<double>& probability);
 
 /// At each pose of a ladder the placements that the score likes best, of thumb, index and both, and
 /// what searches say of them.

@@ -12,6 +12,7 @@
 #include "app/job/planner.h"
 #include "app/job/run_policy.h"
 #include "app/studies/ladder.h"
+#include "app/training/object_families.h"
 
 namespace pregrasp {
 
@@ -24,6 +25,7 @@ struct StudySetup {
   PlannerConfig planner;
   RunConfig run;
   std::filesystem::path weights;
+  std::vector<TrainingObject> objects;  ///< of a study of networks: more to judge them by
 
   int threads = 0;             ///< of one item; cannot change a result
   std::filesystem::path runs;  ///< where the items' run directories are kept; empty for nowhere
@@ -48,6 +50,7 @@ struct StudyInfo {
   std::string name;  ///< of --study
   std::string text;  ///< one line
   bool of_ladders = false;
+  bool takes_objects = false;
   std::unique_ptr<Study> (*make)(const StudySetup& setup) = nullptr;
   /// One line about an item that was made, for the terminal.
   std::string (*describe)(const nlohmann::json& item) = nullptr;

@@ -299,6 +299,7 @@ StudyInfo Table1Study() {
   return {"table1",
           "every scene with every seed, beside the paper's figures",
           false,
+          false,
           [](const StudySetup& setup) -> std::unique_ptr<Study> {
             return std::make_unique<Table1>(setup);
           },

@@ -27,11 +27,6 @@ GraspRecord MakeRecord(const GraspWorld& world, const GrownGrasp& grasp, int con
   return record;
 }
 
-bool Resembles(const TrainingObject& object, const std::vector<ExcludedObject>& excluded) {
-  return std::any_of(excluded.begin(), excluded.end(),
-                     [&](const ExcludedObject& other) { return other.Resembles(object.shape); });
-}
-
 PointCloud CloudOf(const DatasetItem& item) { return {item.P_O, item.N_O}; }
 
 }  // namespace
@@ -44,17 +39,35 @@ std::string ItemConfig::ToJson() const {
   json["points"] = points;
   json["excluded"] = nlohmann::ordered_json::object();
   for (const ExcludedObject& object : excluded) json["excluded"][object.name()] = object.hash();
+  if (objects) {
+    json["objects"] = nlohmann::ordered_json::object();
+    for (const TrainingObject& object : *objects) {
+      json["objects"][object.name] = {{"family", object.family},
+                                      {"mass", object.mass},
+                                      {"shape", ExcludedObject(object.name, object.shape).hash()}};
+    }
+  }
   return json.dump();
 }
 
+std::int64_t ItemOfFamily(const std::string& family, std::int64_t number) {
+  const std::vector<std::string>& all = ObjectFamilies();
+  const auto found = std::find(all.begin(), all.end(), family);
+  if (found == all.end()) throw InputError("", "family", "one of ObjectFamilies()", family);
+  return found - all.begin() + number * std::ssize(all);
+}
+
 SceneObject MakeItemObject(const ItemConfig& config, std::int64_t index) {
+  if (config.objects) {
+    return MakeSceneObject((*config.objects)[index % config.objects->size()]);
+  }
   const auto& families = ObjectFamilies();
   const std::string& family = families[index % families.size()];
   constexpr int kAttempts = 200;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     TrainingObject object =
         SampleObject(family, Rng(config.seed, RngStream::kItemObject, index, attempt));
-    if (!Resembles(object, config.excluded)) return MakeSceneObject(std::move(object));
+    if (!ResemblesAny(object.shape, config.excluded)) return MakeSceneObject(std::move(object));
   }
   throw InputError("", "excluded", "objects that leave room for family " + family, "none");
 }

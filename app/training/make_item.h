@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,10 +26,17 @@ struct ItemConfig {
   GrowthConfig growth;
   LabelConfig labels;
   std::vector<ExcludedObject> excluded;  ///< whom no object may resemble
+  /// Objects to take in turn instead of random members of ObjectFamilies(); null for these. Whether
+  /// they resemble excluded ones is for whoever gives them to know (ResemblesAny).
+  std::shared_ptr<const std::vector<TrainingObject>> objects;
 
   /// What decides an item's objects, scenes and grasps: a data set's description.
   std::string ToJson() const;
 };
+
+/// The item that is member `number` of a family: families take turns.
+/// @throws InputError if there is no such family.
+std::int64_t ItemOfFamily(const std::string& family, std::int64_t number);
 
 /// The object of item `index`: families take turns; drawn again while it resembles an excluded one.
 SceneObject MakeItemObject(const ItemConfig& config, std::int64_t index);

@@ -86,4 +86,9 @@ bool ExcludedObject::Resembles(const Shape& shape) const {
   return CalcUnlikeness(shape) < kLeastUnlikeness;
 }
 
+bool ResemblesAny(const Shape& shape, const std::vector<ExcludedObject>& excluded) {
+  return std::any_of(excluded.begin(), excluded.end(),
+                     [&](const ExcludedObject& other) { return other.Resembles(shape); });
+}
+
 }  // namespace pregrasp

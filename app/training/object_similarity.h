@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/core/math.h"
 #include "app/geometry/signed_distance.h"
@@ -35,6 +36,9 @@ class ExcludedObject {
   Vector3 centre_;  // of its bounding box
   std::shared_ptr<const SignedDistance> surface_;
 };
+
+/// Whether `shape` resembles one of them.
+bool ResemblesAny(const Shape& shape, const std::vector<ExcludedObject>& excluded);
 
 /// Evaluation objects are never training objects: nothing nearer than this to one of them [m].
 inline constexpr double kLeastUnlikeness = 0.005;

@@ -166,19 +166,19 @@ TEST_F(EvalCommandTest, ALadderHasARowForEachPoseAndAnOraclesRun) {
   const nlohmann::json table = nlohmann::json::parse(ReadText(folder_ / "ladder/ladder.json"));
   ASSERT_EQ(table.size(), 1U);
   const nlohmann::json& poses = table[0]["poses"];
-  ASSERT_EQ(poses.size(), 5U);
+  ASSERT_EQ(poses.size(), 8U);
   for (const nlohmann::json& pose : poses) {
     EXPECT_EQ(pose["overlap_mm"], 0.0);
     EXPECT_EQ(pose["holds"], true);
     EXPECT_EQ(pose["stays_when_released"], true);
   }
   EXPECT_EQ(poses[0]["found"], 0);  // flat on the table
-  EXPECT_GT(poses[4]["found"], 0);  // 6 cm over the edge
-  EXPECT_NEAR(poses[4]["moved_mm"], 70.0, 1e-9);
+  EXPECT_GT(poses[7]["found"], 0);  // 6 cm over the edge
+  EXPECT_NEAR(poses[7]["moved_mm"], 70.0, 1e-9);
   ASSERT_EQ(table[0]["oracle"].size(), 1U);
   EXPECT_GE(table[0]["oracle"][0]["progress"], 0.0);
   EXPECT_LE(table[0]["oracle"][0]["progress"], 1.0);
-  EXPECT_NE(ReadText(folder_ / "ladder/ladder.md").find("| ruler | 1 | 5 | 70 mm, 0 deg |"),
+  EXPECT_NE(ReadText(folder_ / "ladder/ladder.md").find("| ruler | 1 | 8 | 70 mm, 0 deg |"),
             std::string::npos);
 }
 

@@ -1,6 +1,6 @@
 -- The book tipped forward about its lower front edge, by a finger on its top.
 local poses = {}
-for i, angle in ipairs { 0, 3, 8, 16, 24 } do
+for i, angle in ipairs { 0, 3, 6, 9, 12, 16, 20, 24 } do
   local a = math.rad(angle)
   local c, s = math.cos(a), math.sin(a)
   local x, z = -0.0775, 0.115  -- from the edge that it turns about to the origin of its frame

@@ -1,6 +1,6 @@
 -- The container raised on the near side; it turns about its lower far edge.
 local poses = {}
-for i, angle in ipairs { 0, -5, -10, -15, -20 } do
+for i, angle in ipairs { 0, -3, -6, -9, -12, -15, -18, -20 } do
   local a = math.rad(angle)
   local c, s = math.cos(a), math.sin(a)
   local x, z = 0.100, 0  -- from the edge that it turns about to the origin of its frame

@@ -1,6 +1,6 @@
 -- The keyboard pushed against the wall and turned up about its lower back edge.
 local poses = { { p = { -0.225, 0, 0.010 } } }  -- where it stands at the start
-for i, angle in ipairs { 0, -4, -8, -15, -22, -30 } do
+for i, angle in ipairs { 0, -4, -8, -12, -17, -22, -26, -30 } do
   local a = math.rad(angle)
   local c, s = math.cos(a), math.sin(a)
   local x, z = 0.065, 0.010  -- from the edge that it turns about to the origin of its frame

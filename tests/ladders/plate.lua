@@ -1,6 +1,6 @@
 -- The plate raised on the near side by a finger under its rim; it turns about its foot.
 local poses = {}
-for i, angle in ipairs { 0, -5, -10, -20, -28 } do
+for i, angle in ipairs { 0, -4, -8, -12, -16, -20, -24, -28 } do
   local a = math.rad(angle)
   local c, s = math.cos(a), math.sin(a)
   local x, z = 0.075, 0  -- from the edge that it turns about to the origin of its frame

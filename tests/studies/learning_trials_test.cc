@@ -5,7 +5,7 @@
 #include "app/core/data_folder.h"
 #include "app/core/error.h"
 #include "app/networks/safetensors.h"
-#include "app/training/object_families.h"
+#include "app/training/make_item.h"
 
 namespace pregrasp {
 namespace {
@@ -32,7 +32,7 @@ TEST(LearningTrialsTest, GeneratedGraspsAreBetterThanRandomPoints) {
   ThreadPool pool(2);
   int generated = 0, random = 0, samples = 0;
   for (const char* family : {"flask", "tub"}) {
-    const auto facts = TryGenerator(family, 0, 7, Weights(), pool);
+    const auto facts = TryGenerator(nullptr, ItemOfFamily(family, 0), 7, Weights(), pool);
     for (const auto& [name, counts] : facts["generator"].items()) {
       EXPECT_EQ(counts["overlapping"], 0) << family << " " << name;
       EXPECT_EQ(counts["samples"], facts["random"][name]["samples"]);
@@ -47,8 +47,24 @@ TEST(LearningTrialsTest, GeneratedGraspsAreBetterThanRandomPoints) {
 
 TEST(LearningTrialsTest, ATrialIsAFunctionOfItsArguments) {
   ThreadPool one(1), two(2);
-  const auto a = TryGenerator("wedge", 1, 3, Weights(), one);
-  EXPECT_EQ(a, TryGenerator("wedge", 1, 3, Weights(), two));
+  const auto a = TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), one);
+  EXPECT_EQ(a, TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), two));
+}
+
+TEST(LearningTrialsTest, GivenObjectsGetLabelsAndSamples) {
+  const TrainingObject can{"can", "can", Cylinder{0.03, 0.10}, 0.3};
+  const TrainingObject rod{"rod", "rod", Cylinder{0.012, 0.16}, 0.03};
+  const auto objects =
+      std::make_shared<const std::vector<TrainingObject>>(std::vector<TrainingObject>{can, rod});
+  ThreadPool pool(2);
+  const auto judged = JudgeObjects(objects, 1, 2, 4, Weights(), pool)["objects"];
+  ASSERT_EQ(judged.size(), 1U);
+  EXPECT_EQ(judged[0]["object"], "rod");
+  EXPECT_GT(judged[0]["truth"].size(), 50U);
+  for (const char* list : {"score", "lifted", "probability"}) {
+    EXPECT_EQ(judged[0][list].size(), judged[0]["truth"].size());
+  }
+  EXPECT_GT(judged[0]["generator"]["both"]["samples"], 0);
 }
 
 TEST(LearningTrialsTest, WeightsThatHeldNothingOutAreRefused) {
