@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "app/core/data_folder.h"
@@ -20,7 +22,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kObjects = 3;       // of each family held out and seed
+constexpr int kObjects = 3;        // of each family held out and seed
+constexpr int kKnownOfFamily = 3;  // of the families that were learned from, for the baseline
+constexpr std::uint64_t kLibrarySeed = 0x6c696272;
 constexpr int kMeshesOfItem = 4;  // which are labelled in parallel
 constexpr std::array<const char*, 3> kCaseNames{"thumb", "index", "both"};
 
@@ -55,7 +59,8 @@ class LearningItems : public Study {
     if (index < num_objects()) {
       ThreadPool pool(setup_.threads);
       const std::int64_t item = ItemOfFamily(families_[index / kObjects], index % kObjects);
-      return record("object", TryGenerator(nullptr, item, seed, setup_.weights, pool));
+      return record("object",
+                    TryGenerator(nullptr, item, seed, setup_.weights, library(pool), pool));
     }
     index -= num_objects();
     if (index < std::ssize(setup_.ladders)) {
@@ -66,7 +71,7 @@ class LearningItems : public Study {
     ThreadPool pool(setup_.threads);
     return record("meshes", JudgeObjects(meshes_, begin,
                                          std::min(begin + kMeshesOfItem, std::ssize(*meshes_)),
-                                         seed, setup_.weights, pool));
+                                         seed, setup_.weights, library(pool), pool));
   }
 
  private:
@@ -75,9 +80,25 @@ class LearningItems : public Study {
     return (std::ssize(setup_.objects) + kMeshesOfItem - 1) / kMeshesOfItem;
   }
 
+  // Made when it is first asked for: an item that is done needs none.
+  const GraspLibrary& library(ThreadPool& pool) const {
+    std::call_once(once_, [&] {
+      std::vector<std::string> learned;
+      for (const std::string& family : ObjectFamilies()) {
+        if (std::find(families_.begin(), families_.end(), family) == families_.end()) {
+          learned.push_back(family);
+        }
+      }
+      library_ = std::make_unique<const GraspLibrary>(learned, kKnownOfFamily, kLibrarySeed, pool);
+    });
+    return *library_;
+  }
+
   StudySetup setup_;
   std::vector<std::string> families_;
   LearningObjects meshes_;
+  mutable std::once_flag once_;
+  mutable std::unique_ptr<const GraspLibrary> library_;
 };
 
 // Of what TryGenerator said of objects: the share of samples of these cases for which `key` counts.
@@ -93,9 +114,10 @@ double CalcShare(const std::vector<nlohmann::json>& objects, const char* source,
   return samples > 0.0 ? counted / samples : 0.0;
 }
 
-// As the planner asks for samples, of single draws, and of random points; refined and not.
+// As the planner asks for samples, of single draws, of known grasps that are nearest, and of random
+// points; refined and not.
 void AddGeneratorShares(const std::vector<nlohmann::json>& objects, Json& summary) {
-  for (const char* source : {"generator", "single_draw", "random"}) {
+  for (const char* source : {"generator", "single_draw", "nearest", "random"}) {
     for (const auto& [suffix, key] : {std::pair("", "feasible"), std::pair("_raw", "raw")}) {
       summary[fmt::format("{}_both{}", source, suffix)] = CalcShare(objects, source, {"both"}, key);
       summary[fmt::format("{}_single{}", source, suffix)] =

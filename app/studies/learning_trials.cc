@@ -18,6 +18,7 @@
 #include "app/grasp/grasp_search.h"
 #include "app/job/job.h"
 #include "app/networks/score_function.h"
+#include "app/studies/free_object.h"
 #include "app/studies/holding_press.h"
 #include "app/training/make_item.h"
 #include "app/training/metrics.h"
@@ -100,23 +101,6 @@ TrainingData PrepareToJudge(std::shared_ptr<const Dataset> dataset, const ScoreJ
       std::move(dataset), judge.levels(), families,
       [](const TrainingContext& context) { return !context.truths.empty(); });
 }
-
-// An object with nothing around it, turned at random as in training.
-struct FreeObject {
-  FreeObject(const ItemConfig& config, std::int64_t index) {
-    const SceneObject object = MakeItemObject(config, index);
-    name = object.object.name;
-    family = object.object.family;
-    cloud = MakeItemCloud(config, object, index);
-    int tries = 0;
-    do {
-      scene = MakeItemScene(config, object, index, tries++).scene;
-    } while (scene.bodies.size() > 1);
-  }
-  std::string name, family;
-  PointCloud cloud;
-  Scene scene;
-};
 
 // Of items that no data set has.
 ItemConfig UnseenItems(const LearningObjects& objects, std::uint64_t seed) {
@@ -247,7 +231,8 @@ Json JudgeScore(const fs::path& labels, const fs::path& weights) {
 }
 
 Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64_t end,
-                  std::uint64_t seed, const fs::path& weights, ThreadPool& pool) {
+                  std::uint64_t seed, const fs::path& weights, const GraspLibrary& library,
+                  ThreadPool& pool) {
   StateItemConfig config;
   config.item = UnseenItems(objects, seed);
   config.item.scenes = 1;
@@ -268,7 +253,7 @@ Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64
         });
       }
     }
-    Json object = TryGenerator(objects, index, seed, weights, pool);
+    Json object = TryGenerator(objects, index, seed, weights, library, pool);
     object["truth"] = judged.truth;
     object["score"] = judged.score;
     object["lifted"] = judged.lifted;
@@ -279,7 +264,7 @@ Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64
 }
 
 Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint64_t seed,
-                  const fs::path& weights, ThreadPool& pool) {
+                  const fs::path& weights, const GraspLibrary& library, ThreadPool& pool) {
   const FreeObject object(UnseenItems(objects, seed), index);
   const GraspWorld world = MakeTrainingWorld(object.scene);
   const std::vector<RigidTransform> X_WB = world.StartPoses();
@@ -298,8 +283,10 @@ Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint6
   };
   const GraspSearchResult found =
       SearchGrasps(places, search, {}, draw(kGraspsOfObject, 0).NextU64(), pool);
-  std::array<Tally, kNumCases> generated, single, random;
-  std::vector<GeneratedGrasp> samples, single_draws, points;
+  const AlignedBox box(Vector3(object.cloud.P.colwise().minCoeff()),
+                       Vector3(object.cloud.P.colwise().maxCoeff()));
+  std::array<Tally, kNumCases> generated, single, nearest, random;
+  std::vector<GeneratedGrasp> samples, single_draws, neighbours, points;
   std::vector<int> cases;
   for (int g = 0; g < std::min<int>(kGraspsOfObject, std::ssize(found.found)); ++g) {
     for (int which = 0; which < kNumCases; ++which) {
@@ -307,11 +294,15 @@ Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint6
       Rng rng = draw(g, which);
       const auto grasps = generator.Sample(structure, encoded, given, kSamplesOfCondition * draws,
                                            draw(g, kNumCases + which));
+      const std::vector<GraspPoints> near = library.FindNearest(box, given, kSamplesOfCondition);
       for (auto first = grasps.begin(); first != grasps.end(); first += draws) {
         const Rng refinement = draw(g, 2 * kNumCases + static_cast<int>(samples.size()));
         samples.push_back({*first, refinement, {first + 1, first + draws}});
         single_draws.push_back({*first, refinement});
         points.push_back({DrawPoints(given, world.surface().P, rng), refinement});
+        const std::size_t k = (first - grasps.begin()) / draws;
+        neighbours.push_back(
+            {near.empty() ? points.back().points : near[k % near.size()], refinement});
         cases.push_back(which);
       }
     }
@@ -328,11 +319,13 @@ Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint6
   };
   complete(samples, generated);
   complete(single_draws, single);
+  complete(neighbours, nearest);
   complete(points, random);
   Json result{{"object", object.name}, {"family", object.family}, {"grasps", found.found.size()}};
   for (int which = 0; which < kNumCases; ++which) {
     result["generator"][kGeneratorNames[which]] = generated[which].ToJson();
     result["single_draw"][kGeneratorNames[which]] = single[which].ToJson();
+    result["nearest"][kGeneratorNames[which]] = nearest[which].ToJson();
     result["random"][kGeneratorNames[which]] = random[which].ToJson();
   }
   return result;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/core/thread_pool.h"
+#include "app/studies/grasp_library.h"
 #include "app/studies/ladder.h"
 #include "app/studies/study.h"
 #include "app/training/object_families.h"
@@ -28,19 +29,21 @@ nlohmann::ordered_json JudgeScore(const std::filesystem::path& labels,
 
 /// What the generators make of conditions taken from feasible grasps of one new object in free
 /// space: for thumb, index and both the samples, those feasible as projected and after refinement,
-/// and those whose fingertips overlap; beside them the same of single draws, and of as many sets of
-/// random points, projected and refined likewise.
+/// and those whose fingertips overlap; beside them the same of single draws, of the grasps of
+/// `library` that are nearest, and of as many sets of random points, projected and refined
+/// likewise.
 /// @param index  of an item that no data set has: of `objects`, or of ObjectFamilies() if null.
 nlohmann::ordered_json TryGenerator(const LearningObjects& objects, std::int64_t index,
                                     std::uint64_t seed, const std::filesystem::path& weights,
-                                    ThreadPool& pool);
+                                    const GraspLibrary& library, ThreadPool& pool);
 
 /// The same of objects `begin` to `end` of `objects` and, beside it, labels that searches give them
 /// in a scene of each (as MakeStateItem's) with the score's answers: lists "truth", "score",
 /// "lifted", "probability".
 nlohmann::ordered_json JudgeObjects(const LearningObjects& objects, std::int64_t begin,
                                     std::int64_t end, std::uint64_t seed,
-                                    const std::filesystem::path& weights, ThreadPool& pool);
+                                    const std::filesystem::path& weights,
+                                    const GraspLibrary& library, ThreadPool& pool);
 
 /// R2, rank correlation, AUC and calibration of such lists.
 nlohmann::ordered_json JudgeLists(const std::vector<double>& truth,

@@ -12,6 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const GraspLibrary& Library() {
+  static const GraspLibrary library = [] {
+    ThreadPool pool(2);
+    return GraspLibrary({"can", "rod"}, 1, 5, pool);
+  }();
+  return library;
+}
+
 fs::path Weights() { return DataFolder() / "assets" / "weights"; }
 
 TEST(LearningTrialsTest, TheShippedScoreKnowsFamiliesThatItNeverSaw) {
@@ -32,7 +40,8 @@ TEST(LearningTrialsTest, GeneratedGraspsAreBetterThanRandomPoints) {
   ThreadPool pool(2);
   int generated = 0, random = 0, samples = 0;
   for (const char* family : {"flask", "tub"}) {
-    const auto facts = TryGenerator(nullptr, ItemOfFamily(family, 0), 7, Weights(), pool);
+    const auto facts =
+        TryGenerator(nullptr, ItemOfFamily(family, 0), 7, Weights(), Library(), pool);
     for (const auto& [name, counts] : facts["generator"].items()) {
       EXPECT_EQ(counts["overlapping"], 0) << family << " " << name;
       EXPECT_EQ(counts["samples"], facts["random"][name]["samples"]);
@@ -47,8 +56,8 @@ TEST(LearningTrialsTest, GeneratedGraspsAreBetterThanRandomPoints) {
 
 TEST(LearningTrialsTest, ATrialIsAFunctionOfItsArguments) {
   ThreadPool one(1), two(2);
-  const auto a = TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), one);
-  EXPECT_EQ(a, TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), two));
+  const auto a = TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), Library(), one);
+  EXPECT_EQ(a, TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), Library(), two));
 }
 
 TEST(LearningTrialsTest, GivenObjectsGetLabelsAndSamples) {
@@ -57,7 +66,7 @@ TEST(LearningTrialsTest, GivenObjectsGetLabelsAndSamples) {
   const auto objects =
       std::make_shared<const std::vector<TrainingObject>>(std::vector<TrainingObject>{can, rod});
   ThreadPool pool(2);
-  const auto judged = JudgeObjects(objects, 1, 2, 4, Weights(), pool)["objects"];
+  const auto judged = JudgeObjects(objects, 1, 2, 4, Weights(), Library(), pool)["objects"];
   ASSERT_EQ(judged.size(), 1U);
   EXPECT_EQ(judged[0]["object"], "rod");
   EXPECT_GT(judged[0]["truth"].size(), 50U);

@@ -1,0 +1,16 @@
+#include "app/studies/free_object.h"
+
+namespace pregrasp {
+
+FreeObject::FreeObject(const ItemConfig& config, std::int64_t index) {
+  const SceneObject object = MakeItemObject(config, index);
+  name = object.object.name;
+  family = object.object.family;
+  cloud = MakeItemCloud(config, object, index);
+  int tries = 0;
+  do {
+    scene = MakeItemScene(config, object, index, tries++).scene;
+  } while (scene.bodies.size() > 1);
+}
+
+}  // namespace pregrasp
