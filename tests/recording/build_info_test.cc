@@ -69,7 +69,7 @@ TEST(BuildInfoTest, TheHashFollowsTheTreeAndTheFileChangesOnlyWithIt) {
 
 TEST(BuildInfoTest, LibrariesHaveVersions) {
   const auto libraries = BuildLibraries();
-  for (const char* name : {"eigen", "fmt", "mrpt", "nlohmann_json", "zlib"}) {
+  for (const char* name : {"eigen", "fmt", "lua", "mrpt", "nlohmann_json", "zlib"}) {
     ASSERT_TRUE(libraries.count(name)) << name;
     EXPECT_NE(libraries.at(name).find('.'), std::string::npos) << name << ' ' << libraries.at(name);
   }
