@@ -34,7 +34,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kNumCases = 3;  // thumb, index, both: GeneratorOf's order
 constexpr int kGraspsOfObject = 6, kSamplesOfCondition = 4;
-constexpr int kContactsOfPose = 200;  // of each case
+constexpr int kContactsOfPose = 200;                  // of each case
+constexpr int kPushesOfMesh = 32, kStatesOfMesh = 3;  // meshes are slow to simulate
 constexpr const char* kScoreFile = "score.safetensors";
 constexpr int kPartsOfGrasp = 1000;  // streams
 constexpr double kHandSpan = 0.13;   // between contacts of one hand [m]
@@ -236,6 +237,8 @@ Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64
   StateItemConfig config;
   config.item = UnseenItems(objects, seed);
   config.item.scenes = 1;
+  config.motion.pushes = kPushesOfMesh;
+  config.motion.states = kStatesOfMesh;
   std::vector<Dataset> found(end - begin);
   pool.ParallelFor(static_cast<int>(found.size()),
                    [&](int i, int) { found[i].items.push_back(MakeStateItem(config, begin + i)); });
