@@ -28,8 +28,8 @@ constexpr std::uint64_t kLibrarySeed = 0x6c696272;
 constexpr int kMeshesOfItem = 4;  // which are labelled in parallel
 constexpr std::array<const char*, 3> kCaseNames{"thumb", "index", "both"};
 
-// Items: the labels, the score's speed, objects by family, number and seed, ladders by seed,
-// meshes.
+// Items: the labels, the score's speed, objects by family, number and seed, ladders by seed, and
+// the meshes once.
 class LearningItems : public Study {
  public:
   explicit LearningItems(const StudySetup& setup)
@@ -38,9 +38,7 @@ class LearningItems : public Study {
     meshes_ = std::make_shared<const std::vector<TrainingObject>>(setup.objects);
   }
 
-  std::int64_t num_items() const override {
-    return 2 + (num_objects() + std::ssize(setup_.ladders) + num_mesh_items()) * setup_.seeds;
-  }
+  std::int64_t num_items() const override { return 2 + num_seeded_items() + num_mesh_items(); }
 
   Json MakeItem(std::int64_t index) const override {
     const auto record = [](const char* kind, Json facts) {
@@ -54,6 +52,13 @@ class LearningItems : public Study {
     }
     if (index == 1) return record("speed", {{"seconds", TimeScore(setup_.weights)}});
     index -= 2;
+    if (index >= num_seeded_items()) {
+      const std::int64_t begin = (index - num_seeded_items()) * kMeshesOfItem;
+      const std::int64_t end = std::min(begin + kMeshesOfItem, std::ssize(*meshes_));
+      ThreadPool pool(setup_.threads);
+      return record("meshes", JudgeObjects(meshes_, begin, end, setup_.first_seed, setup_.weights,
+                                           library(pool), pool));
+    }
     const std::uint64_t seed = setup_.first_seed + static_cast<std::uint64_t>(index % setup_.seeds);
     index /= setup_.seeds;
     if (index < num_objects()) {
@@ -63,19 +68,14 @@ class LearningItems : public Study {
                     TryGenerator(nullptr, item, seed, setup_.weights, library(pool), pool));
     }
     index -= num_objects();
-    if (index < std::ssize(setup_.ladders)) {
-      return record("ladder", ProbeLadder(setup_.ladders[index], seed, setup_));
-    }
-    index -= std::ssize(setup_.ladders);
-    const std::int64_t begin = index * kMeshesOfItem;
-    ThreadPool pool(setup_.threads);
-    return record("meshes", JudgeObjects(meshes_, begin,
-                                         std::min(begin + kMeshesOfItem, std::ssize(*meshes_)),
-                                         seed, setup_.weights, library(pool), pool));
+    return record("ladder", ProbeLadder(setup_.ladders[index], seed, setup_));
   }
 
  private:
   std::int64_t num_objects() const { return kObjects * std::ssize(families_); }
+  std::int64_t num_seeded_items() const {
+    return (num_objects() + std::ssize(setup_.ladders)) * setup_.seeds;
+  }
   std::int64_t num_mesh_items() const {
     return (std::ssize(setup_.objects) + kMeshesOfItem - 1) / kMeshesOfItem;
   }
