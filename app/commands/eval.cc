@@ -124,7 +124,8 @@ EvalConfig MakeConfig(const EvalOptions& options) {
       throw InputError("--objects", "", "--study learning, which judges networks by them",
                        options.study);
     }
-    setup.objects = ReadObjectFolder(options.objects);
+    setup.objects =
+        std::make_shared<const std::vector<TrainingObject>>(ReadObjectFolder(options.objects));
   }
   if (options.keep_runs) setup.runs = options.out / "runs";
   std::vector<Setting> settings;

@@ -95,9 +95,9 @@ std::string Describe(const EvalConfig& config, std::int64_t items) {
                                {"scene", HashScene(ladder.scene)},
                                {"poses", DescribePoses(ladder)}});
   }
-  if (!setup.objects.empty()) {
+  if (setup.objects) {
     ItemConfig items;
-    items.objects = std::make_shared<const std::vector<TrainingObject>>(setup.objects);
+    items.objects = setup.objects;
     json["objects"] = Json::parse(items.ToJson()).at("objects");
   }
   json["settings"] = PlannerSettings(setup.planner);

@@ -7,6 +7,7 @@ FreeObject::FreeObject(const ItemConfig& config, std::int64_t index) {
   name = object.object.name;
   family = object.object.family;
   cloud = MakeItemCloud(config, object, index);
+  box = {Vector3(cloud.P.colwise().minCoeff()), Vector3(cloud.P.colwise().maxCoeff())};
   int tries = 0;
   do {
     scene = MakeItemScene(config, object, index, tries++).scene;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "app/geometry/bounds.h"
 #include "app/training/make_item.h"
 
 namespace pregrasp {
@@ -13,6 +14,7 @@ struct FreeObject {
 
   std::string name, family;
   PointCloud cloud;
+  AlignedBox box;  ///< of the cloud, in O
   Scene scene;
 };
 

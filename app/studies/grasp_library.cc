@@ -49,9 +49,7 @@ GraspLibrary::GraspLibrary(const std::vector<std::string>& families, int members
       const GraspSearchResult result = SearchGrasps(
           places, search, {}, Rng(seed, RngStream::kProbedContacts, index).NextU64(), pool);
       if (result.found.empty()) continue;
-      KnownObject known{AlignedBox(Vector3(object.cloud.P.colwise().minCoeff()),
-                                   Vector3(object.cloud.P.colwise().maxCoeff())),
-                        {}};
+      KnownObject known{object.box, {}};
       for (const auto& found : result.found) known.grasps.push_back(found.contacts);
       objects_.push_back(std::move(known));
     }

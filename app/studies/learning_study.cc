@@ -33,10 +33,7 @@ constexpr std::array<const char*, 3> kCaseNames{"thumb", "index", "both"};
 class LearningItems : public Study {
  public:
   explicit LearningItems(const StudySetup& setup)
-      : setup_(setup), families_(ReadHeldOutFamilies(setup.weights)) {
-    if (setup.objects.empty()) return;
-    meshes_ = std::make_shared<const std::vector<TrainingObject>>(setup.objects);
-  }
+      : setup_(setup), families_(ReadHeldOutFamilies(setup.weights)) {}
 
   std::int64_t num_items() const override { return 2 + num_seeded_items() + num_mesh_items(); }
 
@@ -54,10 +51,10 @@ class LearningItems : public Study {
     index -= 2;
     if (index >= num_seeded_items()) {
       const std::int64_t begin = (index - num_seeded_items()) * kMeshesOfItem;
-      const std::int64_t end = std::min(begin + kMeshesOfItem, std::ssize(*meshes_));
+      const std::int64_t end = std::min(begin + kMeshesOfItem, num_meshes());
       ThreadPool pool(setup_.threads);
-      return record("meshes", JudgeObjects(meshes_, begin, end, setup_.first_seed, setup_.weights,
-                                           library(pool), pool));
+      return record("meshes", JudgeObjects(setup_.objects, begin, end, setup_.first_seed,
+                                           setup_.weights, library(pool), pool));
     }
     const std::uint64_t seed = setup_.first_seed + static_cast<std::uint64_t>(index % setup_.seeds);
     index /= setup_.seeds;
@@ -76,9 +73,8 @@ class LearningItems : public Study {
   std::int64_t num_seeded_items() const {
     return (num_objects() + std::ssize(setup_.ladders)) * setup_.seeds;
   }
-  std::int64_t num_mesh_items() const {
-    return (std::ssize(setup_.objects) + kMeshesOfItem - 1) / kMeshesOfItem;
-  }
+  std::int64_t num_meshes() const { return setup_.objects ? std::ssize(*setup_.objects) : 0; }
+  std::int64_t num_mesh_items() const { return (num_meshes() + kMeshesOfItem - 1) / kMeshesOfItem; }
 
   // Made when it is first asked for: an item that is done needs none.
   const GraspLibrary& library(ThreadPool& pool) const {
@@ -96,7 +92,6 @@ class LearningItems : public Study {
 
   StudySetup setup_;
   std::vector<std::string> families_;
-  LearningObjects meshes_;
   mutable std::once_flag once_;
   mutable std::unique_ptr<const GraspLibrary> library_;
 };
@@ -128,28 +123,20 @@ void AddGeneratorShares(const std::vector<nlohmann::json>& objects, Json& summar
       CalcShare(objects, "generator", {"thumb", "index", "both"}, "overlapping");
 }
 
-// What the score says of the labels of meshes.
-class MeshLabels {
- public:
-  void Add(const nlohmann::json& object) {
-    constexpr std::array kLists{"truth", "score", "lifted", "probability"};
-    for (std::size_t list = 0; list < kLists.size(); ++list) {
-      for (const double value : object.at(kLists[list])) lists_[list].push_back(value);
-    }
+void AddLabels(const nlohmann::json& object, JudgedLabels& labels) {
+  for (std::size_t i = 0; i < object.at("truth").size(); ++i) {
+    labels.Add(object["truth"][i], object["score"][i], object["lifted"][i],
+               object["probability"][i]);
   }
-  Json ToJson() const { return JudgeLists(lists_[0], lists_[1], lists_[2], lists_[3]); }
-
- private:
-  std::array<std::vector<double>, 4> lists_;
-};
+}
 
 // Of the user's meshes, the same as of our own objects: learning.json's "objects".
 Json SummariseMeshes(const std::vector<nlohmann::json>& objects) {
-  MeshLabels all;
-  std::map<std::string, MeshLabels> families;
+  JudgedLabels all;
+  std::map<std::string, JudgedLabels> families;
   for (const nlohmann::json& object : objects) {
-    all.Add(object);
-    families[object.at("family").get<std::string>()].Add(object);
+    AddLabels(object, all);
+    AddLabels(object, families[object.at("family").get<std::string>()]);
   }
   const Json facts = all.ToJson();
   Json summary{{"objects", objects.size()},

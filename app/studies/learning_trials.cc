@@ -50,19 +50,6 @@ ObjectState SeenIn(const ContextRecord& context) {
   return {context.phi, context.occluded, context.X_WO.linear().row(2).transpose()};
 }
 
-// Labels beside the score's answers.
-struct Judged {
-  std::vector<double> truth, score, lifted, probability;
-
-  void Add(double progress, double s, bool is_lifted, double p) {
-    truth.push_back(progress);
-    score.push_back(s);
-    lifted.push_back(is_lifted ? 1.0 : 0.0);
-    probability.push_back(p);
-  }
-  Json ToJson() const { return JudgeLists(truth, score, lifted, probability); }
-};
-
 // The score, asked about labels.
 class ScoreJudge {
  public:
@@ -83,7 +70,7 @@ class ScoreJudge {
     const VectorX p = score_.ScoreContacts(structure, state, contacts, ScoreOutput::kLifted);
     for (Eigen::Index i = 0; i < s.size(); ++i) {
       const TruthRecord& truth = *context.truths[i];
-      visit(by_room_ ? truth.room : truth.relief, s[i], truth.lifted, p[i]);
+      visit(by_room_ ? truth.room : truth.relief, s[i], truth.lifted ? 1.0 : 0.0, p[i]);
     }
   }
 
@@ -201,8 +188,14 @@ std::vector<std::string> ReadHeldOutFamilies(const fs::path& weights) {
   return training["validation"].get<std::vector<std::string>>();
 }
 
-Json JudgeLists(const std::vector<double>& truth, const std::vector<double>& score,
-                const std::vector<double>& lifted, const std::vector<double>& probability) {
+void JudgedLabels::Add(double progress, double s, double is_lifted, double p) {
+  truth.push_back(progress);
+  score.push_back(s);
+  lifted.push_back(is_lifted);
+  probability.push_back(p);
+}
+
+Json JudgedLabels::ToJson() const {
   return {{"labels", truth.size()},
           {"r2", CalcR2(truth, score)},
           {"rank", CalcRankCorrelation(truth, score)},
@@ -214,13 +207,14 @@ Json JudgeScore(const fs::path& labels, const fs::path& weights) {
   const ScoreJudge judge(weights);
   const TrainingData data = PrepareToJudge(std::make_shared<Dataset>(ReadDataset(labels)), judge,
                                            ReadHeldOutFamilies(weights));
-  Judged all, held, not_held;
-  std::map<std::string, Judged> families;
+  JudgedLabels all, held, not_held;
+  std::map<std::string, JudgedLabels> families;
   for (const TrainingContext& context : data.validation) {
     ThrowIfInterrupted();
     const bool pressed = context.context->kind.find("held") != std::string::npos;
-    judge.Judge(context, [&](double truth, double s, bool lifted, double p) {
-      for (Judged* judged : {&families[context.item->family], &all, pressed ? &held : &not_held}) {
+    judge.Judge(context, [&](double truth, double s, double lifted, double p) {
+      for (JudgedLabels* judged :
+           {&families[context.item->family], &all, pressed ? &held : &not_held}) {
         judged->Add(truth, s, lifted, p);
       }
     });
@@ -240,18 +234,20 @@ Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64
   config.motion.pushes = kPushesOfMesh;
   config.motion.states = kStatesOfMesh;
   std::vector<Dataset> found(end - begin);
-  pool.ParallelFor(static_cast<int>(found.size()),
-                   [&](int i, int) { found[i].items.push_back(MakeStateItem(config, begin + i)); });
+  pool.ParallelFor(static_cast<int>(found.size()), [&](int i, int) {
+    ThrowIfInterrupted();
+    found[i].items.push_back(MakeStateItem(config, begin + i));
+  });
   const ScoreJudge judge(weights);
   Json judged_objects = Json::array();
   for (std::int64_t index = begin; index < end; ++index) {
     ThrowIfInterrupted();
     const auto dataset = std::make_shared<const Dataset>(std::move(found[index - begin]));
-    Judged judged;
+    JudgedLabels judged;
     if (!dataset->items.front().truths.empty()) {
       const TrainingData data = PrepareToJudge(dataset, judge, {});
       for (const TrainingContext& context : data.training) {
-        judge.Judge(context, [&](double truth, double s, bool lifted, double p) {
+        judge.Judge(context, [&](double truth, double s, double lifted, double p) {
           judged.Add(truth, s, lifted, p);
         });
       }
@@ -286,8 +282,6 @@ Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint6
   };
   const GraspSearchResult found =
       SearchGrasps(places, search, {}, draw(kGraspsOfObject, 0).NextU64(), pool);
-  const AlignedBox box(Vector3(object.cloud.P.colwise().minCoeff()),
-                       Vector3(object.cloud.P.colwise().maxCoeff()));
   std::array<Tally, kNumCases> generated, single, nearest, random;
   std::vector<GeneratedGrasp> samples, single_draws, neighbours, points;
   std::vector<int> cases;
@@ -297,7 +291,8 @@ Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint6
       Rng rng = draw(g, which);
       const auto grasps = generator.Sample(structure, encoded, given, kSamplesOfCondition * draws,
                                            draw(g, kNumCases + which));
-      const std::vector<GraspPoints> near = library.FindNearest(box, given, kSamplesOfCondition);
+      const std::vector<GraspPoints> near =
+          library.FindNearest(object.box, given, kSamplesOfCondition);
       for (auto first = grasps.begin(); first != grasps.end(); first += draws) {
         const Rng refinement = draw(g, 2 * kNumCases + static_cast<int>(samples.size()));
         samples.push_back({*first, refinement, {first + 1, first + draws}});

@@ -18,6 +18,15 @@ namespace pregrasp {
 /// Objects to judge networks by; null for random members of ObjectFamilies().
 using LearningObjects = std::shared_ptr<const std::vector<TrainingObject>>;
 
+/// Labels beside the score's answers.
+struct JudgedLabels {
+  std::vector<double> truth, score, lifted, probability;
+
+  void Add(double progress, double s, double is_lifted, double p);
+  /// Their number, R2, rank correlation, AUC and calibration.
+  nlohmann::ordered_json ToJson() const;
+};
+
 /// The weights' own word on which families they never saw. @throws InputError if there is none.
 std::vector<std::string> ReadHeldOutFamilies(const std::filesystem::path& weights);
 
@@ -44,12 +53,6 @@ nlohmann::ordered_json JudgeObjects(const LearningObjects& objects, std::int64_t
                                     std::int64_t end, std::uint64_t seed,
                                     const std::filesystem::path& weights,
                                     const GraspLibrary& library, ThreadPool& pool);
-
-/// R2, rank correlation, AUC and calibration of such lists.
-nlohmann::ordered_json JudgeLists(const std::vector<double>& truth,
-                                  const std::vector<double>& score,
-                                  const std::vector<double>& lifted,
-                                  const std::vector<double>& probability);
 
 /// At each pose of a ladder the placements that the score likes best, of thumb, index and both, and
 /// what searches say of them.

@@ -25,7 +25,8 @@ struct StudySetup {
   PlannerConfig planner;
   RunConfig run;
   std::filesystem::path weights;
-  std::vector<TrainingObject> objects;  ///< of a study of networks: more to judge them by
+  /// Of a study of networks: more to judge them by; may be null.
+  std::shared_ptr<const std::vector<TrainingObject>> objects;
 
   int threads = 0;             ///< of one item; cannot change a result
   std::filesystem::path runs;  ///< where the items' run directories are kept; empty for nowhere

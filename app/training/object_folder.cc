@@ -12,6 +12,7 @@
 #include "app/batch/item_folder.h"
 #include "app/core/error.h"
 #include "app/core/text.h"
+#include "app/geometry/bounds.h"
 #include "app/geometry/load_shape.h"
 #include "app/geometry/mass_properties.h"
 
@@ -105,9 +106,8 @@ TrainingObject ReadObject(const fs::path& folder, const MeshEntry& entry) {
   mesh.file = entry.file;
   TrainingObject object{entry.family, fs::path(entry.file).stem().string(), mesh};
   LoadShape(object.shape, folder, (folder / entry.file).string(), "");
-  TriangleMesh& loaded = std::get<Mesh>(object.shape).mesh;
-  const Vector3 low = loaded.V.colwise().minCoeff(), high = loaded.V.colwise().maxCoeff();
-  loaded.V.rowwise() -= (0.5 * (low + high)).transpose();
+  const Vector3 centre = CalcBounds(object.shape).center();
+  std::get<Mesh>(object.shape).mesh.V.rowwise() -= centre.transpose();
   object.mass =
       entry.mass.value_or(std::max(kLeastMass, kObjectDensity * CalcVolume(object.shape)));
   return object;
