@@ -62,11 +62,11 @@ class Sweep {
 // Makes the way longer until the object is free at its end. False if something is in the way, or
 // if the length is at its bound.
 bool GoOnUntilFree(Sweep& sweep, const LiftWayConfig& config, LiftWay* way) {
-  const Vector3 up_W = way->rise_W.normalized();
+  const double rise = way->rise_W.norm();
+  const Vector3 up_W = rise > 0.0 ? Vector3(way->rise_W / rise) : way->direction_W;
   for (;;) {
     const Vector3 shift = way->length * way->direction_W;
-    if (sweep.IsFree(shift, up_W, config.rise) &&
-        sweep.IsClear(shift + way->rise_W, config.clearance)) {
+    if (sweep.IsFree(shift, up_W, rise) && sweep.IsClear(shift + way->rise_W, config.clearance)) {
       return true;
     }
     if (way->length >= config.max_length) return false;
@@ -107,8 +107,11 @@ LiftWay FindLiftWay(const std::vector<RigidTransform>& X_WB, const PointCloud& c
       if (!sweep.IsFree(Vector3::Zero(), way.direction_W, config.height)) continue;
       way.length = config.height;
       way.rise_W = tilt == 0 ? Vector3(Vector3::Zero()) : Vector3(config.rise * up_W);
-      if (tilt == 0 || GoOnUntilFree(sweep, config, &way)) {
+      const bool comes_free = GoOnUntilFree(sweep, config, &way);
+      if (comes_free || tilt == 0) {
         way.status = LiftWayStatus::kFree;
+        // Under a low ceiling, straight up is as far as is asked.
+        if (!comes_free) way.length = config.height;
         return way;
       }
       way.status = LiftWayStatus::kNeverFree;

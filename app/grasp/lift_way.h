@@ -9,7 +9,7 @@ namespace pregrasp {
 
 struct LiftWayConfig {
   double height = 0.10;  ///< of the way [m]
-  /// A way in another direction than up goes on until the object is free, at most this far [m].
+  /// The way goes on until the object is free, at most this far [m].
   double max_length = 0.60;
   double rise = 0.02;       ///< then so far up [m]
   double clearance = 5e-3;  ///< free: at the end of the rise, nothing is nearer than this [m]
@@ -34,10 +34,10 @@ struct LiftWay {
 };
 
 /// The way of a lift: in the direction nearest to up in which the object comes as far as `height`
-/// without meeting its surroundings and, where that is not up, comes free of them farther on. Among
-/// directions a degree apart: tilts of 0, 1, .. 90 degrees, azimuths a degree of arc apart on each
-/// ring, ties by azimuth. The object is its cloud's points, each followed continuously along the
-/// way; a point may graze the surroundings by 1 mm.
+/// without meeting its surroundings, and farther on, until it is free of them; straight up is taken
+/// even where it does not become so. Among directions a degree apart: tilts of 0, 1, .. 90 degrees,
+/// azimuths a degree of arc apart on each ring, ties by azimuth. The object is its cloud's points,
+/// each followed continuously along the way; a point may graze the surroundings by 1 mm.
 /// @param X_WB   of all bodies, the object first.
 /// @param up_W   unit, against gravity.
 LiftWay FindLiftWay(const std::vector<RigidTransform>& X_WB, const PointCloud& cloud,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "app/core/check.h"
 #include "app/core/error.h"
@@ -29,6 +30,15 @@ std::vector<GraspContact> PressingContacts(const WorldState& state) {
     }
   }
   return pressing;
+}
+
+std::vector<GraspContact> ContactsOf(const Placement& placement) {
+  std::vector<GraspContact> contacts;
+  for (int f = 0; f < kNumPlanningFingers; ++f) {
+    const Placement::Contact& contact = placement.fingers[f];
+    if (contact.on) contacts.push_back({static_cast<Finger>(f), contact.p_OC, contact.nhat_O});
+  }
+  return contacts;
 }
 
 // What ScoreGraspable tries: placements that are good without surroundings, spread over the object.
@@ -191,10 +201,74 @@ ReleaseResult Planner::Release(const ContactGraph& graph, const Certificate& cer
     if (result.stays) break;
     fixed.fingers[static_cast<int>(contact.finger)] = {true, contact.p_OC, contact.nhat_O};
   }
-  const auto scorer = scorer_->At(world_->GetPoses(end), ScoreOutput::kLifted);
-  result.conditions = FindPlacements(graph.mesh(), *shape_, *scorer, fixed, config_.grasp_samples,
-                                     config_.placements, Rng(seed_, RngStream::kReleasePlacements));
+  result.conditions = FindConditions(graph.mesh(), world_->GetPoses(end), fixed,
+                                     result.stays ? std::vector<GraspContact>{} : result.pressing);
   return result;
+}
+
+std::vector<Placement> Planner::FindConditions(const TriangleMesh& mesh,
+                                               const std::vector<RigidTransform>& X_WB,
+                                               const Placement& fixed,
+                                               const std::vector<GraspContact>& pressing) const {
+  const auto scorer = scorer_->At(X_WB, ScoreOutput::kLifted);
+  const std::vector<Placement> likely =
+      FindPlacements(mesh, *shape_, *scorer, fixed, config_.grasp_samples * config_.placement_pool,
+                     config_.placements, Rng(seed_, RngStream::kReleasePlacements));
+  std::vector<double> worth = scorer->Score(likely);
+  pool_.ParallelFor(static_cast<int>(likely.size()), [&](int i, int) {
+    ThrowIfInterrupted();
+    worth[i] *= room_->CalcWith(X_WB, ContactsOf(likely[i]), pressing);
+  });
+  std::vector<int> order(likely.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return worth[a] > worth[b]; });
+  order.resize(std::min<std::size_t>(order.size(), config_.grasp_samples * config_.pilots));
+  std::vector<Placement> conditions;
+  for (const int i : order) conditions.push_back(likely[i]);
+  return conditions;
+}
+
+GraspRequest Planner::MakeRequest(const Placement& condition, int path_rank, int number) const {
+  return {condition, Rng(seed_, RngStream::kGraspLatent, path_rank, number),
+          Rng(seed_, RngStream::kGraspCompletion, path_rank, number)};
+}
+
+std::vector<Placement> Planner::ChooseConditions(const ContactPlaces& places,
+                                                 const std::vector<Placement>& conditions,
+                                                 const std::vector<GraspContact>& fixed,
+                                                 const std::vector<HandConfiguration>& known,
+                                                 int path_rank) const {
+  constexpr int kPilots = 2;          // grasps generated for each condition
+  constexpr int kFirstNumber = 1000;  // of their random numbers: above those of all samples
+  CompletionConfig as_projected = config_.completion;
+  as_projected.max_solves = as_projected.max_probes = 0;
+  std::vector<GraspRequest> requests;
+  for (const Placement& condition : conditions) {
+    for (int i = 0; i < kPilots; ++i) {
+      const int number = kFirstNumber + static_cast<int>(requests.size());
+      requests.push_back(MakeRequest(condition, path_rank, number));
+    }
+  }
+  const std::vector<CompletedGrasp> pilots =
+      pregrasp::CompleteGrasps(places, as_projected, GenerateGrasps(places.X_WB(), requests), fixed,
+                               pool_, known)
+          .grasps;
+  // By condition: how many of its pilots are feasible, and of how many the forces hold.
+  std::vector<std::pair<int, int>> worth(conditions.size());
+  for (std::size_t i = 0; i < pilots.size(); ++i) {
+    worth[i / kPilots].first += pilots[i].raw.feasible() ? 1 : 0;
+    worth[i / kPilots].second += pilots[i].raw.kinematics.has_value() ? 1 : 0;
+  }
+  std::vector<int> order(conditions.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return worth[a] > worth[b]; });
+  std::vector<Placement> chosen;
+  for (const int i : order) {
+    const bool enough = 2 * std::ssize(chosen) >= config_.grasp_samples;
+    const bool hopeless = worth[i].first == 0 && worth[order.front()].first > 0;
+    if (!enough && !hopeless) chosen.push_back(conditions[i]);
+  }
+  return chosen;
 }
 
 GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseResult& release,
@@ -219,11 +293,11 @@ GraspSet Planner::CompleteGrasps(const Certificate& certificate, const ReleaseRe
   for (const GraspResult& found : searched.found) {
     known.push_back(found.kinematics->ik.configuration());
   }
+  const std::vector<Placement> conditions =
+      ChooseConditions(places, release.conditions, fixed, known, path_rank);
   std::vector<GraspRequest> requests;
   for (int sample = 0; sample < config_.grasp_samples; ++sample) {
-    requests.push_back({release.conditions[sample % release.conditions.size()],
-                        Rng(seed_, RngStream::kGraspLatent, path_rank, sample),
-                        Rng(seed_, RngStream::kGraspCompletion, path_rank, sample)});
+    requests.push_back(MakeRequest(conditions[sample % conditions.size()], path_rank, sample));
   }
   set.grasps = pregrasp::CompleteGrasps(places, completion, GenerateGrasps(X_WB, requests), fixed,
                                         pool_, std::move(known))

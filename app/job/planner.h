@@ -42,6 +42,12 @@ struct PlannerConfig {
   MppiConfig mppi;
   CertifyConfig certify;
   PlacementSearchConfig placements;
+  /// For each sample so many placements of the best score, of which those with the most room for
+  /// the rest of a grasp are completed.
+  int placement_pool = 10;
+  /// And of these for each sample so many are tried with a generated grasp or two: the samples
+  /// complete those in which that was feasible.
+  int pilots = 3;
   CompletionConfig completion;
   int grasp_samples = 20;  ///< on a certified trajectory
   int grasp_draws = 24;    ///< of a sample at most: GeneratedGrasp::further
@@ -61,9 +67,10 @@ struct ReleaseResult : Released {
   /// The contacts that press at the end of the trajectory. If the object does not stay without
   /// them, every grasp keeps them where they are.
   std::vector<GraspContact> pressing;
-  /// What the grasp generator is asked to complete, one for each sample in turn: the placements
-  /// with the best learned score where the object is now. If the object does not stay, all of them
-  /// hold `pressing`. Empty if there is no place for a fingertip.
+  /// What the grasp generator may be asked to complete, best first: of the placements with the best
+  /// learned score where the object is now, those of the highest score times GraspRoom::CalcWith.
+  /// If the object does not stay, all of them hold `pressing`. Empty if there is no place for a
+  /// fingertip.
   std::vector<Placement> conditions;
 };
 
@@ -150,6 +157,21 @@ class Planner {
                                              const std::vector<GraspRequest>& requests) const;
 
  private:
+  // ReleaseResult::conditions. @param fixed, pressing  empty where the object stays.
+  std::vector<Placement> FindConditions(const TriangleMesh& mesh,
+                                        const std::vector<RigidTransform>& X_WB,
+                                        const Placement& fixed,
+                                        const std::vector<GraspContact>& pressing) const;
+
+  // Of `conditions`, at most half as many as there are samples: those in which pilots, generated
+  // grasps that count for nothing else, are feasible; where none is, those whose forces hold.
+  std::vector<Placement> ChooseConditions(const ContactPlaces& places,
+                                          const std::vector<Placement>& conditions,
+                                          const std::vector<GraspContact>& fixed,
+                                          const std::vector<HandConfiguration>& known,
+                                          int path_rank) const;
+  GraspRequest MakeRequest(const Placement& condition, int path_rank, int number) const;
+
   std::shared_ptr<const World> world_;
   WorldState start_;
   PlannerConfig config_;

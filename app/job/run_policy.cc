@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "app/core/interrupt.h"
 
@@ -122,28 +123,67 @@ class Runner {
     return TakePath(timeline_, graph, number);
   }
 
+  // A plan of a path: its certificate, and the last step of its grasps and lifts, if it has any.
+  struct TriedPlan {
+    const Node* certified = nullptr;
+    const Node* end = nullptr;
+    std::vector<int> lifting = {};  // the most promising grasp first, by number
+
+    int worlds_held() const {
+      const auto& robust = std::get<CertifyFacts>(certified->facts.details).robust;
+      return robust ? robust->held : 0;
+    }
+  };
+
+  // More grasps that lift; among equals, more worlds in which the plan holds (design, section 4).
+  static bool PromisesMore(const TriedPlan& x, const TriedPlan& y) {
+    const Progress &a = x.end->progress, &b = y.end->progress;
+    return std::tuple(a.reached, a.lifted, x.worlds_held(), a.feasible) >
+           std::tuple(b.reached, b.lifted, y.worlds_held(), b.feasible);
+  }
+
   const Node& Try(const Node& path, int number) {
     const std::string name = fmt::format("path {} of {}", number, config_.paths);
     const Node& optimised = Optimise(path, name);
-    const auto plans = std::ssize(timeline_.GetState(optimised)->optimization->plans);
-    const Node* best = nullptr;
-    for (int plan = 1; plan <= std::min<std::ptrdiff_t>(config_.plans, plans); ++plan) {
-      const Node& end = TryPlan(optimised, plan, name);
-      if (best == nullptr || best->progress < end.progress) best = &end;
-      if (end.progress.reached == Progress::Reached::kOk) break;
+    const auto count = std::ssize(timeline_.GetState(optimised)->optimization->plans);
+    std::vector<TriedPlan> plans;
+    int certified = 0;
+    for (int plan = 1; plan <= count && certified < config_.plans; ++plan) {
+      plans.push_back(TryPlan(optimised, plan, name));
+      certified += plans.back().end->progress.reached >= Progress::Reached::kCertified ? 1 : 0;
+    }
+    std::stable_sort(plans.begin(), plans.end(), PromisesMore);
+    const Node* best = plans.front().end;
+    int motions = 0;
+    // What keeps the hand from one grasp often keeps it from the next: plans take turns.
+    for (std::size_t turn = 0; turn < static_cast<std::size_t>(config_.motions); ++turn) {
+      for (const TriedPlan& plan : plans) {
+        if (turn >= plan.lifting.size() || motions == config_.motions) continue;
+        Report(name + ", hand motion", motions++, config_.motions);
+        const Node& moved = MoveHand(*plan.end, plan.lifting[turn]);
+        if (best->progress < moved.progress) best = &moved;
+        if (moved.progress.reached == Progress::Reached::kOk) return ShowFrames(timeline_, moved);
+      }
     }
     return *best;
   }
 
-  const Node& TryPlan(const Node& optimised, int plan, const std::string& name) {
+  TriedPlan TryPlan(const Node& optimised, int plan, const std::string& name) {
     nlohmann::json options = nlohmann::json::object();
     if (plan > 1) options["plan"] = plan;
+    Report(name + ", plans and their grasps", plan - 1, kMostPlans);
     const Node& certified = timeline_.Do(optimised, Verb::kCertify, options);
-    if (!std::get<CertifyFacts>(certified.facts.details).certified) return certified;
-    if (timeline_.GetState(certified)->release->conditions.empty()) return certified;
-    Report(name + ", grasps", 0, 1);
-    const Node& grasps = CompleteGrasps(timeline_, certified, nlohmann::json::object());
-    return MoveHand(grasps, name);
+    if (!std::get<CertifyFacts>(certified.facts.details).certified ||
+        timeline_.GetState(certified)->release->conditions.empty()) {
+      return {&certified, &certified};
+    }
+    const Node& end = CompleteGrasps(timeline_, certified, nlohmann::json::object());
+    TriedPlan tried{&certified, &end};
+    const auto state = timeline_.GetState(end);
+    for (const int number : OrderGrasps(*state)) {
+      if (state->lifts.at(number)->held) tried.lifting.push_back(number);
+    }
+    return tried;
   }
 
   const Node& Optimise(const Node& path, const std::string& name) {
@@ -159,22 +199,8 @@ class Runner {
     return *node;
   }
 
-  // Tries the lifting grasps in turn; the first that ends in success is it, else the one that came
-  // farthest.
-  const Node& MoveHand(const Node& grasps, const std::string& name) {
-    const auto state = timeline_.GetState(grasps);
-    const std::vector<int> order = OrderGrasps(*state);
-    const Node* best = &grasps;
-    int tried = 0;
-    for (const int number : order) {
-      if (tried == config_.motions || !state->lifts.at(number)->held) break;
-      Report(name + ", hand motion", tried++, config_.motions);
-      const Node& moved =
-          DoMotion(timeline_, timeline_.Do(grasps, Verb::kKeyframe, {{"grasp", number}}), true);
-      if (best == &grasps || best->progress < moved.progress) best = &moved;
-      if (moved.progress.reached == Progress::Reached::kOk) return ShowFrames(timeline_, moved);
-    }
-    return *best;
+  const Node& MoveHand(const Node& grasps, int number) {
+    return DoMotion(timeline_, timeline_.Do(grasps, Verb::kKeyframe, {{"grasp", number}}), true);
   }
 
   std::string Explain(const Node& end) const {
@@ -302,8 +328,10 @@ std::vector<int> OrderGrasps(const JobState& state) {
     if (WithstandsMore(lift_a, lift_b) || WithstandsMore(lift_b, lift_a)) {
       return WithstandsMore(lift_a, lift_b);
     }
-    return state.grasps->grasps[a - 1].result.wrench->margin >
-           state.grasps->grasps[b - 1].result.wrench->margin;
+    const CompletedGrasp &grasp_a = state.grasps->grasps[a - 1],
+                         &grasp_b = state.grasps->grasps[b - 1];
+    if (grasp_a.source != grasp_b.source) return grasp_a.source == GraspSource::kGenerator;
+    return grasp_a.result.wrench->margin > grasp_b.result.wrench->margin;
   });
   return order;
 }

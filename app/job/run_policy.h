@@ -15,8 +15,9 @@ struct RunConfig {
 
   int paths = 10;    ///< full optimisations at most, of kPaths (design: the budget)
   bool all = false;  ///< go on to the last path after the first success
-  int motions = 4;   ///< lifting grasps of one path whose hand motion is tried
-  int plans = 3;     ///< of one path that are put to certification, where their ends differ
+  int motions = 6;   ///< lifting grasps of one path whose hand motion is tried
+  int plans = 4;     ///< of one path that are certified, their ends differing: of these the one
+                     ///< with most lifting grasps is taken on
 
   void Validate() const;
 };
@@ -60,8 +61,8 @@ const Timeline::Node& PruneAll(Timeline& timeline, const Timeline::Node& scored,
 const Timeline::Node& CompleteGrasps(Timeline& timeline, const Timeline::Node& certified,
                                      nlohmann::json options);
 
-/// The grasps whose lift was simulated, the most promising first, by number. `node` is after
-/// CompleteGrasps.
+/// The grasps whose lift was simulated, the most promising first, by number: what they withstand,
+/// then the generator's before the search's, then the margin. `state` is after CompleteGrasps.
 std::vector<int> OrderGrasps(const JobState& state);
 
 /// Solves the keyframes that are left of a motion that has begun and the frames between them, and

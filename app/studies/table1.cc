@@ -258,14 +258,14 @@ std::string MarkdownText(const std::vector<Row>& rows) {
                     ContactsText(row), fmt::format("{:.1f}", row.seconds)});
   }
   return "Means (standard deviations) are over the runs that are ok, seconds and rollouts over "
-         "all. "
-         "r_suc is the\nshare of the generated grasps that are feasible, each the first of up to "
-         "grasps.draws draws "
-         "whose\nforces hold, raw without refinement; "
-         "r_lift that are lifted too. N_paths\ncounts full optimisations until success. The "
-         "strategy is the fingers of the last stage, and how far (medians) the\nobject moved and "
-         "turned until it was grasped. The paper's columns are its table of all tasks, three runs "
-         "each.\n\n" +
+         "all.\nr_suc is the share of the generated grasps that are feasible, raw without "
+         "refinement. Each is the first of up to\ngrasps.draws draws whose forces hold, and "
+         "completes contacts in which a trial draw was feasible (grasps.pilots); trials do\nnot "
+         "count. Of the plans of a path, the one with most lifting grasps is taken. r_lift is the "
+         "share that is lifted too.\nN_paths counts full optimisations until success. The strategy "
+         "is the fingers of the last stage, and how far (medians)\nthe object moved and turned "
+         "until it was grasped. The paper's columns are its table of all tasks, three runs each.\n"
+         "\n" +
          MarkdownTable(table) + "\nEvery run:\n\n" + MarkdownTable(runs);
 }
 

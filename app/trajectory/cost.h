@@ -27,7 +27,7 @@ struct CostWeights {
   double tip_spacing = 1.0;  ///< the same of the two tips' spheres with each other
   double hold = 1.0;         ///< the object's way in the hold over what a certificate allows, from
                              ///< half of that on, at most 2
-  double haste = 0.5;        ///< a tip that touches moves faster than 0.8 m/s or speeds up by more
+  double haste = 2.0;        ///< a tip that touches moves faster than 0.8 m/s or speeds up by more
                              ///< than 8 m/s^2: the larger ratio's excess over 1, at most 1. Hardly
                              ///< a hand follows (HandLimits); where nothing else helps, it may try
   double fall = 1.5;         ///< the object fell out of the scene, or the simulation diverged

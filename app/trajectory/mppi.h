@@ -62,7 +62,7 @@ enum class MppiEnd {
 /// "", "patience", "limit": the word used in logs.
 const char* MppiEndName(MppiEnd end);
 
-inline constexpr int kMostPlans = 4;
+inline constexpr int kMostPlans = 8;
 
 /// Everything that the next iteration depends on, and what the last one did: a copyable value. To
 /// go back, keep a copy; to fork, step a copy with another Mppi.

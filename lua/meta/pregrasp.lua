@@ -444,7 +444,7 @@ function Path:optimize(options) end
 ---@field tip_overlap? number weight: a fingertip in the surroundings, by the share of a fingertip's radius, 0 to 1000; 1
 ---@field tip_spacing? number weight: the two tips overlap, by the share of a fingertip's radius, 0 to 1000; 1
 ---@field hold? number weight: the object's way in the hold over what a certificate allows, from half of it on, 0 to 1000; 1
----@field haste? number weight: a tip that touches is over 0.8 m/s or 8 m/s^2, by the excess, at most 1, 0 to 1000; 0.5
+---@field haste? number weight: a tip that touches is over 0.8 m/s or 8 m/s^2, by the excess, at most 1, 0 to 1000; 2
 ---@field fall? number weight: the object fell out of the scene, 0 to 1000; 1.5
 
 ---A picture of the path on the contact mesh.
@@ -600,6 +600,8 @@ function Trajectory:grasps(options) end
 ---@field points? integer places a finger that are scored, for what the generator is to complete, 1 to 10000; 400
 ---@field pairs? integer placements of both fingers that are scored, 0 to 50000; 4000
 ---@field spacing? number by which the placements of two samples differ somewhere, 0 to 1 m; 0.01
+---@field pool? integer placements of the best score for each sample, of which those with most room are tried, 1 to 1000; 10
+---@field pilots? integer placements tried for each sample: those that a grasp was found for are completed, 1 to 100; 3
 ---@field f_min? number smallest normal force of every finger, 0 to 100 N, within the rules at least 0.5; 0.5
 ---@field may_drop? boolean ring and little may be left out; true
 ---@field max_refinement? number how far a contact may be moved, 0 to 0.1 m, within the rules at most 0.01; 0.01

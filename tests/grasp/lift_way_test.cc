@@ -71,6 +71,34 @@ TEST(LiftWayTest, GoesOnUntilTheObjectIsOutAndThenUp) {
   }
 }
 
+TEST(LiftWayTest, StraightUpGoesOnUntilTheObjectIsAboveItsNeighbours) {
+  Scene scene = BoxOnTable();
+  for (const double side : {-1.0, 1.0}) {
+    const std::string name = side < 0 ? "right" : "left";
+    scene.bodies.push_back(FixedBox(name, {0.05, 0.06, 0.15}, {0, side * 0.062, 0.075}));
+  }
+  const LiftWay way = FindWay(scene);
+  ASSERT_TRUE(way.is_free());
+  EXPECT_EQ(TiltDeg(way), 0.0);
+  EXPECT_EQ(way.rise_W, Vector3::Zero());
+  // Its underside 5 mm above their tops, to a step of the length.
+  EXPECT_GE(way.length, 0.15 + 0.0049);
+  EXPECT_LE(way.length, 0.15 + 0.0111);
+}
+
+TEST(LiftWayTest, UnderACeilingThatKeepsTheObjectAmongNeighboursStraightUpIsAsFarAsIsAsked) {
+  Scene scene = BoxOnTable();
+  for (const double side : {-1.0, 1.0}) {
+    const std::string name = side < 0 ? "right" : "left";
+    scene.bodies.push_back(FixedBox(name, {0.05, 0.06, 0.15}, {0, side * 0.062, 0.075}));
+  }
+  scene.bodies.push_back(FixedBox("ceiling", {0.8, 0.8, 0.02}, {0, 0, 0.12 + 0.12 + 0.01}));
+  const LiftWay way = FindWay(scene);
+  ASSERT_TRUE(way.is_free());
+  EXPECT_EQ(TiltDeg(way), 0.0);
+  EXPECT_EQ(way.length, 0.10);
+}
+
 TEST(LiftWayTest, InAClosedRoomThereIsNone) {
   Scene scene = BoxOnTable();
   for (const double side : {-1.0, 1.0}) {
