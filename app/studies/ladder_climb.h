@@ -19,7 +19,7 @@ struct PoseFacts {
   bool stays_when_released = false;
   double final_score = 0.0;  ///< the learned part of what a plan's end is worth (ScoreGraspable)
   double room = 0.0;         ///< the other part (GraspRoom)
-  /// Of the placements that grasps are completed from: the mean score, and the mean probability.
+  /// Of the placements that are tried for completion: the mean score, and the mean probability.
   double score = 0.0, probability = 0.0;
   int generated = 0, generated_feasible = 0, generated_raw = 0;
   int sets = 0, sets_hold = 0;  ///< of a search: plausible ones drawn, and those that hold

@@ -14,8 +14,8 @@
 namespace pregrasp {
 
 /// Generated grasps of an object where it is in a scene, by the shipped weights, as the planner
-/// asks for them: the conditions are the placements with the best learned scores there, and hold
-/// what presses already.
+/// asks for its trials: the conditions are the placements with the best learned scores there, and
+/// hold what presses already.
 class GeneratedGrasps {
  public:
   static constexpr int kSamples = 20;
