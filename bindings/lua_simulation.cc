@@ -184,7 +184,7 @@ void SimBack(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) 
 
 Pushed SimFork(lua_State* L, LuaSimulation& sim) {
   PushObject(L, std::make_shared<LuaSimulation>(sim));
-  CountMemory(L, 1 + sim.simulation()->num_states() / 64);
+  CountMemory(L, 1);  // the past is the session's: a fork copies none of it
   return {1};
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 // Shares of the picture left free around a focus; the card and the footer lie at top and bottom.
 constexpr double kSideBorder = 0.10, kTopBorder = 0.15, kBottomBorder = 0.11;
-constexpr double kSmallestDistance = 0.1;  // for a focus of a single point [m]
+constexpr double kSmallestDistance = 2e-3;  // for a focus of a single point [m]
 
 }  // namespace
 

@@ -11,13 +11,16 @@
 #include "app/geometry/mesh_topology.h"
 #include "app/geometry/read_mesh.h"
 #include "app/geometry/reconstruct.h"
+#include "app/geometry/solids.h"
 
 namespace pregrasp {
 namespace {
 
 constexpr double kMaxSize = 100.0;  // [m], as for primitives; a larger mesh is a unit error
 // What a hand is to pick up; `check` warns of what is larger than 2 m.
-constexpr double kMaxObjectSize = 5.0;  // [m]
+constexpr double kMaxObjectSize = 10.0;  // [m]
+// Closed parts of a file; of those that touch or overlap, each is asked in every distance.
+constexpr int kMaxComponents = 10'000, kMaxSolids = 64;
 // Beyond these a number is a wrong unit: air has 1.2 kg/m^3, osmium 22600.
 constexpr double kLeastDensity = 0.1, kMostDensity = 1e6;  // [kg/m^3]
 
@@ -82,37 +85,32 @@ void RequireClosed(const TriangleMesh& mesh, const std::string& name, const std:
   }
 }
 
-TriangleMesh TakeComponent(const TriangleMesh& mesh, const std::vector<int>& label, int c) {
-  std::vector<bool> keep(label.size());
-  std::transform(label.begin(), label.end(), keep.begin(), [c](int of) { return of == c; });
-  return TakeFaces(mesh, keep);
+// Parts with corners of their own, as the file has them, may touch along whole edges.
+void KeepPartsApart(const TriangleMesh& raw, TriangleMesh& mesh) {
+  if (FindDefects(mesh).crowded_edges == 0) return;
+  TriangleMesh apart = TakeFaces(raw, std::vector<bool>(raw.F.rows(), true));
+  const MeshDefects defects = FindDefects(apart);
+  if (defects.open_edges == 0 && defects.crowded_edges == 0) mesh = std::move(apart);
 }
 
-// Turns each component outward, or inward when an odd number of others lies around it.
-void OrientOutward(TriangleMesh& mesh) {
-  const std::vector<int> label = LabelComponents(mesh);
-  const int count = 1 + *std::max_element(label.begin(), label.end());
-  std::vector<TriangleMesh> parts;
-  std::vector<AlignedBox> bounds;
-  parts.reserve(count);
-  for (int c = 0; c < count; ++c) {
-    parts.push_back(TakeComponent(mesh, label, c));
-    bounds.push_back(BoundsOfPoints(parts[c].V));
-  }
-  std::vector<bool> turn(count);
-  for (int c = 0; c < count; ++c) {
-    const Vector3 p = parts[c].V.row(0);
-    int around = 0;
-    for (int d = 0; d < count; ++d) {
-      if (d == c || !bounds[d].contains(bounds[c])) continue;
-      if (std::abs(CalcWindingNumber(parts[d], p)) > 0.5) ++around;
-    }
-    const bool outward_now = CalcVolume(parts[c]) > 0.0;
-    turn[c] = outward_now != (around % 2 == 0);
-  }
-  for (int f = 0; f < mesh.F.rows(); ++f) {
-    if (turn[label[f]]) std::swap(mesh.F(f, 1), mesh.F(f, 2));
-  }
+// Faces that two solids with common corners have between them, once for each, are inside of what
+// they are together. Without them the mesh is theirs, if it is closed.
+void DropInnerWalls(TriangleMesh& mesh) {
+  if (FindDefects(mesh).repeated_faces == 0) return;
+  TriangleMesh single = TakeSingleFaces(mesh);
+  if (single.F.rows() == 0 || FindDefects(single).open_edges > 0) return;
+  mesh = std::move(single);
+}
+
+// Depth cameras leave points without a place.
+void RequireFiniteCloud(const MatrixX3& P, const std::string& name, const std::string& where,
+                        const std::string& field) {
+  Eigen::Index lost = 0;
+  for (Eigen::Index i = 0; i < P.rows(); ++i) lost += P.row(i).allFinite() ? 0 : 1;
+  if (lost == 0) return;
+  throw InputError(
+      where, field, "a cloud of the points that were seen, with the others left out",
+      fmt::format("{}, in which {} of {} points are not finite", name, lost, P.rows()));
 }
 
 struct Loader {
@@ -131,16 +129,34 @@ struct Loader {
     }
   }
 
-  void operator()(Mesh& mesh) const {
+  // The shape itself is loaded: a file's solids may make a union of it.
+  void Load(Shape& shape) const {
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+      shape = LoadMesh(*mesh);
+    } else {
+      std::visit(*this, shape);
+    }
+  }
+
+  Shape LoadMesh(const Mesh& mesh) const {
     const std::string name = '"' + mesh.file + '"';
     const TriangleMesh raw = Read(name, [&] { return ReadTriangles(directory / mesh.file); });
-    mesh.mesh = RepairMesh({mesh.scale * raw.V, raw.F}, name, where, field);
+    const std::vector<TriangleMesh> solids =
+        RepairMesh({mesh.scale * raw.V, raw.F}, name, where, field);
+    Union whole;
+    for (const TriangleMesh& solid : solids) {
+      whole.parts.push_back({Mesh{mesh.file, mesh.scale, solid}});
+    }
+    if (solids.size() == 1) return whole.parts.front().shape;
+    return whole;
   }
+
+  void operator()(Mesh& /*see Load*/) const {}
   void operator()(Cloud& cloud) const {
     const std::string name = '"' + cloud.file + '"';
     const PointFile read = Read(name, [&] { return ReadPoints(directory / cloud.file); });
     cloud.points = cloud.scale * read.P;
-    RequireFinitePoints(cloud.points, name, where, field);
+    RequireFiniteCloud(cloud.points, name, where, field);
     RequireSaneSize(cloud.points, name, where, field);
     if (object) RequireObjectSize(BoundsOfPoints(cloud.points), where, field, true);
     try {
@@ -151,8 +167,8 @@ struct Loader {
   }
   void operator()(Union& whole) const {
     for (std::size_t i = 0; i < whole.parts.size(); ++i) {
-      std::visit(Loader{directory, where, fmt::format("{}[{}]", field, i + 1), object},
-                 whole.parts[i].shape);
+      Loader{directory, where, fmt::format("{}[{}]", field, i + 1), object}.Load(
+          whole.parts[i].shape);
     }
   }
   template <typename Primitive>
@@ -179,8 +195,8 @@ void FillMassProperties(Body& body) {
 
 }  // namespace
 
-TriangleMesh RepairMesh(const TriangleMesh& raw, const std::string& name, const std::string& where,
-                        const std::string& field) {
+std::vector<TriangleMesh> RepairMesh(const TriangleMesh& raw, const std::string& name,
+                                     const std::string& where, const std::string& field) {
   RequireFinitePoints(raw.V, name, where, field);
   RequireSaneSize(raw.V, name, where, field);
   const double size = BoundsOfPoints(raw.V).diagonal().norm();
@@ -193,33 +209,47 @@ TriangleMesh RepairMesh(const TriangleMesh& raw, const std::string& name, const 
   if (mesh.F.rows() == 0) {
     throw InputError(where, field, "a closed mesh", name + ", whose triangles have no area");
   }
+  KeepPartsApart(raw, mesh);
+  DropInnerWalls(mesh);
   RequireClosed(mesh, name, where, field);
   if (!OrientConsistently(mesh)) {
     throw InputError(where, field, "a mesh with an inside and an outside",
                      name + ", whose surface has one side only");
   }
   SplitPinchedVertices(mesh);
-  OrientOutward(mesh);
+  const auto require_at_most = [&](int most, int count, const char* what) {
+    if (count <= most) return;
+    throw InputError(where, field, fmt::format("at most {} {}", most, what),
+                     fmt::format("{}, which has {}", name, count));
+  };
+  const std::vector<int> label = LabelComponents(mesh);
+  require_at_most(kMaxComponents, 1 + *std::max_element(label.begin(), label.end()),
+                  "closed parts");
+  std::vector<TriangleMesh> solids = SeparateSolids(mesh);
+  require_at_most(kMaxSolids, static_cast<int>(solids.size()),
+                  "closed parts that touch or overlap");
   // A sheet folded back on itself is closed and holds nothing.
-  if (CalcVolume(mesh) < 1e-9 * size * size * size) {
+  double volume = 0.0;
+  for (const TriangleMesh& solid : solids) volume += CalcVolume(solid);
+  if (volume < 1e-9 * size * size * size) {
     throw InputError(where, field, "a mesh that encloses a volume",
-                     fmt::format("{}, which encloses {:.3g} m^3", name, CalcVolume(mesh)));
+                     fmt::format("{}, which encloses {:.3g} m^3", name, volume));
   }
-  return mesh;
+  return solids;
 }
 
 void LoadShape(Shape& shape, const std::filesystem::path& directory, const std::string& where,
                const std::string& field) {
-  std::visit(Loader{directory, where, field}, shape);
+  Loader{directory, where, field}.Load(shape);
 }
 
 void LoadShapes(Scene& scene, const std::filesystem::path& directory) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     Body& body = scene.bodies[b];
     const std::string field = b == 0 ? "object.shape" : fmt::format("environment[{}].shape", b);
-    std::visit(Loader{directory, body.where, field, b == 0}, body.shape);
+    const bool from_file = std::holds_alternative<Mesh>(body.shape);
+    Loader{directory, body.where, field, b == 0}.Load(body.shape);
     if (b == 0) {
-      const bool from_file = std::holds_alternative<Mesh>(body.shape);
       RequireObjectSize(CalcBounds(body.shape), body.where, field, from_file);
     }
     if (!body.movable()) continue;

@@ -78,14 +78,20 @@ std::vector<int> FindRepresentatives(const MatrixX3& V, double tolerance) {
   return representative;
 }
 
-// Faces with the corners of an earlier one, in any order.
-int CountRepeatedFaces(const TriangleMesh& mesh) {
+// The corners of each face, ascending.
+std::vector<std::array<int, 3>> SortCorners(const TriangleMesh& mesh) {
   std::vector<std::array<int, 3>> faces(static_cast<std::size_t>(mesh.F.rows()));
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto row = static_cast<Eigen::Index>(f);
     faces[f] = {mesh.F(row, 0), mesh.F(row, 1), mesh.F(row, 2)};
     std::sort(faces[f].begin(), faces[f].end());
   }
+  return faces;
+}
+
+// Faces with the corners of an earlier one, in any order.
+int CountRepeatedFaces(const TriangleMesh& mesh) {
+  std::vector<std::array<int, 3>> faces = SortCorners(mesh);
   std::sort(faces.begin(), faces.end());
   return static_cast<int>(faces.end() - std::unique(faces.begin(), faces.end()));
 }
@@ -184,6 +190,48 @@ TriangleMesh TakeFaces(const TriangleMesh& mesh, const std::vector<bool>& keep) 
     for (int i = 0; i < 3; ++i) taken.F(f, i) = new_index[taken.F(f, i)];
   }
   return taken;
+}
+
+std::vector<TriangleMesh> SplitFaces(const TriangleMesh& mesh, const std::vector<int>& part_of,
+                                     int count) {
+  std::vector<std::vector<int>> faces_of(count);
+  for (int f = 0; f < mesh.F.rows(); ++f) faces_of.at(part_of[f]).push_back(f);
+  std::vector<int> new_index(mesh.V.rows(), -1);
+  std::vector<TriangleMesh> parts;
+  for (const std::vector<int>& faces : faces_of) {
+    std::vector<int> used;
+    for (const int f : faces) {
+      for (int i = 0; i < 3; ++i) used.push_back(mesh.F(f, i));
+    }
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    TriangleMesh part;
+    part.V.resize(static_cast<Eigen::Index>(used.size()), 3);
+    for (std::size_t v = 0; v < used.size(); ++v) {
+      part.V.row(static_cast<Eigen::Index>(v)) = mesh.V.row(used[v]);
+      new_index[used[v]] = static_cast<int>(v);
+    }
+    part.F.resize(static_cast<Eigen::Index>(faces.size()), 3);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      for (int i = 0; i < 3; ++i) {
+        part.F(static_cast<Eigen::Index>(f), i) = new_index[mesh.F(faces[f], i)];
+      }
+    }
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+TriangleMesh TakeSingleFaces(const TriangleMesh& mesh) {
+  const std::vector<std::array<int, 3>> faces = SortCorners(mesh);
+  std::vector<std::array<int, 3>> sorted = faces;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<bool> keep(faces.size());
+  std::transform(faces.begin(), faces.end(), keep.begin(), [&](const std::array<int, 3>& face) {
+    const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), face);
+    return last - first == 1;
+  });
+  return TakeFaces(mesh, keep);
 }
 
 std::vector<int> LabelComponents(const TriangleMesh& mesh) {

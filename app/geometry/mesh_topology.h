@@ -35,6 +35,14 @@ TriangleMesh WeldVertices(const TriangleMesh& mesh, double tolerance);
 /// The faces that `keep` is true for, with the vertices that they use.
 TriangleMesh TakeFaces(const TriangleMesh& mesh, const std::vector<bool>& keep);
 
+/// The faces of each of `count` parts, with the vertices that they use.
+/// @param part_of  of each face, 0 to count - 1.
+std::vector<TriangleMesh> SplitFaces(const TriangleMesh& mesh, const std::vector<int>& part_of,
+                                     int count);
+
+/// The faces whose corners no other face has, in any order.
+TriangleMesh TakeSingleFaces(const TriangleMesh& mesh);
+
 /// Component (through shared edges) of each face, numbered in the order of their first face.
 std::vector<int> LabelComponents(const TriangleMesh& mesh);
 

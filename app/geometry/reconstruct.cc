@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/core/check.h"
+#include "app/geometry/cloud_doubts.h"
 #include "app/geometry/cloud_flood.h"
 #include "app/geometry/cloud_planes.h"
 #include "app/geometry/iso_surface.h"
@@ -219,12 +220,32 @@ void RequireThickness(const SampledCloud& cloud) {
                       fmt::format("which lie within {:.2f} mm of a plane", 1e3 * thickness));
 }
 
-void RequireSolid(const TriangleMesh& mesh, int euler_number, double spacing) {
+void RequireOneObject(const CloudDoubts& doubts) {
+  if (doubts.sheet_share == 0.0) return;
+  throw UnclosedCloud(
+      "the points of one object, without what it stands on",
+      fmt::format("{:.0f} % of whose points lie in a sheet that reaches beyond all others",
+                  100.0 * doubts.sheet_share));
+}
+
+// Where points end along a rim, that is why no surface closes, whatever else it looks like.
+void RequireNoRim(const CloudDoubts& doubts) {
+  if (!doubts.has_rim()) return;
+  throw UnclosedCloud(
+      "points all over a closed surface, from every side",
+      fmt::format("whose points end along a rim, {} of them, one at ({:.3g}, {:.3g}, {:.3g}) m",
+                  doubts.rim_points, doubts.p_rim.x(), doubts.p_rim.y(), doubts.p_rim.z()));
+}
+
+void RequireSolid(const TriangleMesh& mesh, int euler_number, double spacing,
+                  const CloudDoubts& doubts) {
   if (mesh.F.rows() == 0 || CalcVolume(mesh) <= 0.0) {
+    RequireNoRim(doubts);
     throw UnclosedCloud(kClosed, "around which no closed surface was found");
   }
   const int handles = 1 - euler_number / 2;
   if (handles > kMaxHandles) {
+    RequireNoRim(doubts);
     throw UnclosedCloud(
         "points denser than the shape's walls are thick",
         fmt::format("whose points are {:.1f} mm apart and give {} holes", 1e3 * spacing, handles));
@@ -244,6 +265,8 @@ Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normal
   cloud.P = TakeRows(points, chosen);
   FindNeighbourhoods(cloud);
   RequireThickness(cloud);
+  const CloudDoubts doubts = FindCloudDoubts(cloud);
+  RequireOneObject(doubts);
   const bool has_normals = TakeNormals(normals, chosen, cloud);
   CloudFlood flood = OrientOutward(cloud, has_normals);
   const double distance = 0.75 * cloud.widest;
@@ -255,7 +278,10 @@ Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normal
   Reconstruction result;
   result.spacing = cloud.spacing;
   result.euler_number = mesh.F.rows() == 0 ? 0 : CalcEulerNumber(mesh);
-  RequireSolid(mesh, result.euler_number, cloud.spacing);
+  RequireSolid(mesh, result.euler_number, cloud.spacing, doubts);
+  // A sheet with both of its sides is no thicker than its points are apart.
+  constexpr double kSheet = 2.0;  // in spacings
+  if (2.0 * CalcVolume(mesh) < kSheet * cloud.spacing * CalcArea(mesh)) RequireNoRim(doubts);
   hull.PullIn(mesh);
   result.mesh = SimplifyMesh(mesh, {}, kTrianglesKept);
 
@@ -266,6 +292,7 @@ Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normal
       std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   result.p99_error = Percentile(errors, 0.99);
   if (result.p99_error > 2.0 * cloud.widest) {
+    RequireNoRim(doubts);
     throw UnclosedCloud(kClosed, fmt::format("of which some lie {:.1f} mm off the surface found",
                                              1e3 * result.p99_error));
   }

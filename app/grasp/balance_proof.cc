@@ -125,27 +125,30 @@ double CalcProofSlack(std::span<const WrenchContact> contacts, double mu, const 
   return slack;
 }
 
-double FindProofLimit(std::span<const WrenchContact> contacts, const Vector3& gravity,
-                      double torque_scale) {
-  const std::vector<ScaledContact> scaled = Scale(contacts, torque_scale);
+ProofLimit FindProofLimit(std::span<const WrenchContact> contacts, const Vector3& gravity,
+                          double torque_scale, double spacing) {
+  ProofLimit limit;
   // For cones that hold the pyramids of CalcProofSlack, so that it agrees.
   const auto holds = [&](double mu) {
-    MinNormConfig solver;
-    solver.tolerance = kLeastSlack;
-    solver.separation = 2.0 * kLeastSlack;
-    const MinNormPoint nearest =
-        FindNearest({scaled, mu / std::cos(kPi / kPyramidEdges)}, WeightDirection(gravity), solver);
-    return nearest.status == MinNormPoint::Status::kSeparated && nearest.lower_bound > kLeastSlack;
+    const BalanceProof proof =
+        FindBalanceProof(contacts, mu / std::cos(kPi / kPyramidEdges), gravity, torque_scale);
+    if (!(proof.impossible && proof.covered >= spacing)) return false;
+    limit.mu = mu;
+    limit.proof = proof;
+    return true;
   };
   // A narrower cone lies in a wider one, so the proof holds below any friction at which it does.
-  if (holds(kMostProofFriction)) return std::numeric_limits<double>::infinity();
   double low = 0.0, high = kMostProofFriction;
-  if (!holds(low)) return 0.0;
+  if (holds(high)) {
+    limit.mu = std::numeric_limits<double>::infinity();
+    return limit;
+  }
+  if (!holds(low)) return limit;
   while (high - low > kProofLimitStep) {
     const double middle = 0.5 * (low + high);
     (holds(middle) ? low : high) = middle;
   }
-  return low;
+  return limit;
 }
 
 }  // namespace pregrasp

@@ -43,10 +43,19 @@ bool CanBalanceWeight(std::span<const WrenchContact> contacts, double mu, const 
 inline constexpr double kMostProofFriction = 3.0;
 inline constexpr double kProofLimitStep = 5e-4;
 
-/// mu*: the friction up to which the proof holds, by bisection, for cones drawn around those of
-/// CalcProofSlack (0.5 % wider than the circular ones): how far a proof is from failing. 0 if it
-/// fails without friction, infinity if it holds at kMostProofFriction.
-double FindProofLimit(std::span<const WrenchContact> contacts, const Vector3& gravity,
-                      double torque_scale);
+/// How far the proof goes.
+struct ProofLimit {
+  /// mu*: the friction up to which there is a proof that covers the points between those given. 0
+  /// if there is none even without friction, infinity if there is one at kMostProofFriction.
+  double mu = 0.0;
+  /// The proof there, which is one at any lower friction too: narrower cones lie in wider ones.
+  BalanceProof proof;
+};
+
+/// mu*, by bisection, for cones drawn around those of CalcProofSlack (0.5 % wider than the circular
+/// ones): how far a proof is from failing.
+/// @param spacing  how far a flat face's points may be from those given [m].
+ProofLimit FindProofLimit(std::span<const WrenchContact> contacts, const Vector3& gravity,
+                          double torque_scale, double spacing);
 
 }  // namespace pregrasp

@@ -163,11 +163,12 @@ std::string Explain(const GraspResult& result) {
                          FingerName(result.fault.tips->fingers[0]),
                          FingerName(result.fault.tips->fingers[1]), -1e3 * result.fault.tips->gap);
     case GraspStatus::kNoInternalForces:
-      return fmt::format("{}: no forces within the cones cancel out; those tried miss by {:.2f} N",
-                         fingers, result.wrench->residual);
+      return fmt::format(
+          "{}: no forces within cones and limits cancel out; those tried miss by {:.2f} N", fingers,
+          result.wrench->residual);
     case GraspStatus::kWeightNotBalanced:
       return fmt::format(
-          "{}: no forces within the cones balance the weight; those tried miss by {:.2f} N",
+          "{}: no forces within cones and limits balance the weight; those tried miss by {:.2f} N",
           fingers, result.wrench->residual);
     case GraspStatus::kTipError:
       return fmt::format("{}: no hand pose was found that reaches; a fingertip stays {:.1f} mm off",

@@ -87,7 +87,7 @@ std::string ExplainReason(const LiftResult& lift, LiftReason reason, const Scene
       return fmt::format("after {:.0f} cm the object is not free of its surroundings",
                          1e2 * lift.way.length);
     case LiftReason::kNoForces:
-      return "no forces inside the friction cones balance the weight";
+      return "no forces within cones and limits balance the weight";
     case LiftReason::kGivesWay:
       return fmt::format("the grasp gives way: its stiffness is {:.1f} N/m {}",
                          lift.forces->least.value, DescribeDirection(lift.forces->least));

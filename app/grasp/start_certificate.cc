@@ -96,18 +96,24 @@ StartCertificate CertifyStart(const GraspWorld& world, const StartCertificateCon
   certificate.mu = wrench.mu;
   certificate.spacing = world.surface().spacing;
   CountPoints(world, edges, touched, certificate);
-  if (wrench.gravity.norm() > 0.0) {  // without weight there is nothing to prove
-    certificate.mu_star = FindProofLimit(reachable, wrench.gravity, wrench.torque_scale);
-    certificate.proof = FindBalanceProof(reachable, wrench.mu, wrench.gravity, wrench.torque_scale);
-  }
-  if (certificate.proof.impossible) {
-    certificate.proof_slack = CalcProofSlack(reachable, wrench.mu, wrench.gravity,
-                                             wrench.torque_scale, certificate.proof.direction);
+  const auto is_proof = [&](const BalanceProof& proof) {
+    certificate.proof_slack =
+        CalcProofSlack(reachable, wrench.mu, wrench.gravity, wrench.torque_scale, proof.direction);
     // Between the samples of a face the proof must hold too.
-    if (certificate.proof_slack > 0.0 && certificate.proof.covered >= certificate.spacing) {
-      certificate.verdict = StartVerdict::kCertified;
-      return certificate;
+    return certificate.proof_slack > 0.0 && proof.covered >= certificate.spacing;
+  };
+  if (wrench.gravity.norm() > 0.0) {  // without weight there is nothing to prove
+    const ProofLimit limit =
+        FindProofLimit(reachable, wrench.gravity, wrench.torque_scale, certificate.spacing);
+    certificate.mu_star = limit.mu;
+    certificate.proof = FindBalanceProof(reachable, wrench.mu, wrench.gravity, wrench.torque_scale);
+    if (!(certificate.proof.impossible && is_proof(certificate.proof)) && wrench.mu <= limit.mu) {
+      certificate.proof = limit.proof;
     }
+  }
+  if (certificate.proof.impossible && is_proof(certificate.proof)) {
+    certificate.verdict = StartVerdict::kCertified;
+    return certificate;
   }
   std::optional<GraspResult> example;
   if (proposer.propose) {

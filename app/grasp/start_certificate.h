@@ -55,8 +55,8 @@ struct StartCertificate {
   StartVerdict verdict = StartVerdict::kSearched;
 
   double mu = 0.0;  ///< the scene's fingertip friction, at which the proof was looked for
-  /// mu*: the friction at which the proof fails (FindProofLimit); infinity if it holds at the
-  /// largest that is tried.
+  /// mu*: the friction up to which the start is certified (FindProofLimit); infinity if it is at
+  /// the largest that is tried.
   double mu_star = 0.0;
   bool thin() const { return std::abs(mu_star - mu) <= kThinMargin; }
   BalanceProof proof;             ///< valid if certified

@@ -5,11 +5,13 @@
 #include <algorithm>
 
 #include "app/dynamics/world.h"
+#include "app/geometry/cloud_doubts.h"
 #include "app/geometry/hull.h"
 #include "app/geometry/mass_properties.h"
 #include "app/geometry/overlap.h"
 #include "app/geometry/tessellate.h"
 #include "app/job/motion_measure.h"
+#include "app/scene/shape_visit.h"
 
 namespace pregrasp {
 namespace {
@@ -32,7 +34,10 @@ class Checker {
     CheckOverlaps();
     if (findings_.empty()) CheckRest();  // what overlaps is pushed apart and never at rest
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) CheckUnits(scene_.bodies[i], i == 0);
-    for (const Body& body : scene_.bodies) CheckPieces(body);
+    for (const Body& body : scene_.bodies) {
+      CheckPieces(body);
+      CheckClouds(body);
+    }
     for (const std::string& departure : RuleDepartures(scene_)) {
       Add(Severity::kWarning, WhereOf(departure),
           departure + ": the results count as outside the rules");
@@ -133,6 +138,21 @@ class Checker {
         fmt::format("\"{}\" is {:.1f} mm thicker in contact than its mesh in places: it takes too "
                     "many convex pieces",
                     body.name, 1e3 * protrusion));
+  }
+
+  // A side without points was closed over, and may be anything.
+  void CheckClouds(const Body& body) {
+    ForEachLeaf(body.shape, RigidTransform::Identity(), [&](const Shape& leaf, const auto& X_BP) {
+      const auto* cloud = std::get_if<Cloud>(&leaf);
+      if (cloud == nullptr) return;
+      const CloudDoubts doubts = FindCloudDoubts(cloud->points);
+      if (!doubts.has_rim()) return;
+      const Vector3 p_B = X_BP * doubts.p_rim;
+      Add(Severity::kWarning, body.where,
+          fmt::format("the points of \"{}\" end along a rim, {} of them, one at ({:.3g}, {:.3g}, "
+                      "{:.3g}) m in its frame: the surface beyond has no points and was made up",
+                      body.name, doubts.rim_points, p_B.x(), p_B.y(), p_B.z()));
+    });
   }
 
   const Scene& scene_;

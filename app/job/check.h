@@ -21,7 +21,8 @@ struct CheckFinding {
 
 /// Looks for what validation cannot see: bodies that overlap (by 0.05 mm or more), that float or do
 /// not stay at rest for 1 s, physics that does not converge there, sizes and densities that look
-/// like another unit, departures from the project's physical rules. Errors first.
+/// like another unit, clouds whose points end along a rim, departures from the project's physical
+/// rules. Errors first.
 /// @param scene  loaded.
 std::vector<CheckFinding> CheckScene(const Scene& scene);
 

@@ -18,7 +18,8 @@ namespace pregrasp {
 namespace {
 
 constexpr double kFocusShare = 0.06;  // of the object's length, around it
-constexpr double kHeadroom = 0.07;    // [m], above it
+constexpr double kHeadroom = 0.07;    // [m], above it, of a full-size object
+constexpr double kFullSize = 0.05;    // [m]; arrows and points shrink with objects below this
 constexpr double kGhostAfter = 1e-3;  // [m]
 constexpr double kGhostTurn = 0.01;   // [rad]
 
@@ -37,6 +38,7 @@ struct PictureMaker::Impl {
   Vector3 view_W;          // towards the viewer, in automatic pictures
   MatrixX3 start_focus_W;  // what they show at least: one camera for a strip, while that does
   double metres_per_newton = 0.0;
+  double shrunk = 1.0;  // what arrows and points measure, of their size at full-size objects
 
   RenderCamera ChooseCamera(const PictureConfig& config, const StepFacts& step,
                             const PictureOverlay& overlay) const;
@@ -59,12 +61,14 @@ PictureMaker::PictureMaker(Scene loaded) : impl_(std::make_unique<Impl>()) {
   TriangleMesh object_W = *impl_->meshes[0];
   object_W.V = TransformPoints(scene.object().X_WB, object_W.V);
   impl_->view_W = ChooseViewDirection(object_W, EnvironmentDistance(scene));
-  impl_->start_focus_W = FocusAround(object_W.V, kFocusShare, kHeadroom);
+  const Vector3 size = object_W.V.colwise().maxCoeff() - object_W.V.colwise().minCoeff();
+  impl_->shrunk = std::min(1.0, size.maxCoeff() / kFullSize);
+  impl_->start_focus_W = FocusAround(object_W.V, kFocusShare, kHeadroom * impl_->shrunk);
   // The forces of a push are a few times the weight, and end at the cap.
   constexpr double kLongArrow = 0.07;  // [m]
   const double large =
       std::min(scene.fingertips.max_force, 2.5 * std::max(scene.object_weight(), 1e-3));
-  impl_->metres_per_newton = kLongArrow / large;
+  impl_->metres_per_newton = kLongArrow * impl_->shrunk / large;
 }
 
 PictureMaker::~PictureMaker() = default;
@@ -139,10 +143,11 @@ void PictureMaker::Impl::AddArrow(RenderScene& picture, const Vector3& p_W, bool
   constexpr double kShortest = 0.02, kLongest = 0.10;  // [m]
   const double force = f_W.norm();
   if (force < 1e-3) return;
-  const double length = std::clamp(metres_per_newton * force, kShortest, kLongest);
+  const double length =
+      std::clamp(metres_per_newton * force, kShortest * shrunk, kLongest * shrunk);
   const Vector3 v_W = f_W * (length / force);
   const Vector3 tail_W = ends_there ? Vector3(p_W - v_W) : p_W;
-  picture.arrows.push_back({tail_W, v_W, 0.0016F, color});
+  picture.arrows.push_back({tail_W, v_W, static_cast<float>(0.0016 * shrunk), color});
   picture.labels.push_back({tail_W, fmt::format("{} {:.2f} N", name, force), color});
 }
 
@@ -188,15 +193,18 @@ PictureOverlay Chosen(PictureOverlay overlay, const PictureConfig& config) {
 // At each contact point the normal and the force: where the object takes part, into it and on it,
 // else into and on the second body. Normals have one length, forces the pictures' scale.
 void AddContactArrows(RenderScene& picture, const std::vector<ContactFacts>& contacts,
-                      double metres_per_newton) {
-  constexpr double kNormalLength = 0.012;             // [m]
-  constexpr float kThin = 0.0005F, kThick = 0.0012F;  // [m]
+                      double metres_per_newton, double shrunk) {
+  const double normal_length = 0.012 * shrunk;  // [m]
+  const auto thin = static_cast<float>(0.0005 * shrunk),
+             thick = static_cast<float>(0.0012 * shrunk);
   for (const ContactFacts& contact : contacts) {
     const double sign = contact.a == 0 ? -1.0 : 1.0;
     picture.arrows.push_back(
-        {contact.p_W, sign * kNormalLength * contact.nhat_W, kThin, NeutralColor()});
+        {contact.p_W, sign * normal_length * contact.nhat_W, thin, NeutralColor()});
     const Vector3 v_W = sign * metres_per_newton * contact.f_W;
-    if (v_W.norm() > 1e-3) picture.arrows.push_back({contact.p_W, v_W, kThick, GoodColor()});
+    if (v_W.norm() > 1e-3 * shrunk) {
+      picture.arrows.push_back({contact.p_W, v_W, thick, GoodColor()});
+    }
   }
 }
 
@@ -220,10 +228,12 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
   if (config.contacts) {
     for (const ContactFacts& contact : step.contacts) {
       if (contact.a != 0 || contact.f_W.norm() < 1e-3) continue;
-      picture.points.push_back({contact.p_W, 0.0022F, NeutralColor()});
+      picture.points.push_back(
+          {contact.p_W, static_cast<float>(0.0022 * impl_->shrunk), NeutralColor()});
     }
   }
-  if (config.trace) AddContactArrows(picture, step.contacts, impl_->metres_per_newton);
+  if (config.trace)
+    AddContactArrows(picture, step.contacts, impl_->metres_per_newton, impl_->shrunk);
   if (config.forces && overlay.forces) {
     const MassProperties& mass = *scene.object().mass_properties;
     impl_->AddArrow(picture, step.object().X_WB() * mass.p_BoBcm, false, mass.mass * scene.gravity,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/graph/contact_path.h"
+#include "app/graph/path_explorer.h"
 #include "app/pictures/words.h"
 
 namespace pregrasp {
@@ -55,9 +56,9 @@ Lines Describe(const Scene& /*scene*/, const MeshFacts& facts) {
 }
 
 Lines Describe(const Scene& /*scene*/, const ScoreFacts& facts) {
-  return {fmt::format("How likely does a contact state lead to a grasp? The learned score of each, "
-                      "mean of {} placements of thumb, index finger and both; a triangle has the "
-                      "colour of the best state that uses it.",
+  return {fmt::format("How near is each contact state to a grasp? Its learned score, mean of {} "
+                      "placements of thumb, index finger and both; a triangle has the colour of "
+                      "the best state that uses it.",
                       facts.samples),
           fmt::format("best here\t{:.3f}, {}", facts.best_here.s_c, NodeText(facts.best_here)),
           fmt::format("best alone\t{:.3f}, {}", facts.best_alone.s_n, NodeText(facts.best_alone))};
@@ -97,8 +98,9 @@ Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
       paper ? fmt::format("Path {}: of all paths of {} contact states the one with rank {} by the "
                           "sum of its scores.",
                           facts.rank, facts.nodes.size(), facts.rank)
-            : fmt::format("Path {}: of all first states that a fingertip can touch, the best by "
-                          "its score over 1 + {:g}, for what paths before it have tried.",
+            : fmt::format("Path {}: of all first states that a fingertip can touch and that no "
+                          "path has tried, the best by its score over 1 + {:g}, for what the paths "
+                          "before it have in common with it.",
                           facts.rank, facts.repeats),
       fmt::format("score\t{:.3f}", facts.score)};
   if (facts.num_tied > 1) {
@@ -107,6 +109,10 @@ Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
         facts.num_tied == kMostTied ? " or more" : "", paper ? "score" : "value",
         facts.tie_rule == "scores" ? "the ranks of their states decide among them"
                                    : "the order of some is that of their states' numbers");
+  }
+  constexpr double kLeast = PathExplorer::kLeastScore;
+  if (!paper && facts.value * (1.0 + facts.repeats) <= kLeast * (1.0 + 1e-12)) {
+    lines[0] += fmt::format(" Scores below {:g} % of the best count as that.", 100.0 * kLeast);
   }
   for (std::size_t i = 0; i < facts.nodes.size(); ++i) {
     lines.push_back(fmt::format("stage {}\t{:.3f}, thumb {}, index {}", i + 1, facts.terms[i],
@@ -133,13 +139,14 @@ Lines Describe(const Scene& /*scene*/, const ScreenFacts& facts) {
 std::string EndOfOptimisation(const IterationFacts& facts) {
   if (facts.end.empty()) return "";
   return facts.end == "limit" ? fmt::format(" The limit of {} iterations ends it.", facts.limit)
-                              : " The best cost has stopped falling.";
+                              : " It ends, as the best cost hardly falls any more.";
 }
 
 Lines Describe(const Scene& /*scene*/, const IterationFacts& facts) {
   Lines lines = {
-      fmt::format("Iteration {}: {} plans near the mean were simulated; the ghosts are where the "
-                  "best of them leave the object, and the mean moves towards them.{}",
+      fmt::format("Iteration {}: {} plans, of noise about the mean or of steady pushes, were "
+                  "simulated; the ghosts are where the best of them leave the object, and the mean "
+                  "moves to their average, in which the best weigh most.{}",
                   facts.iteration, facts.rollouts.size(), EndOfOptimisation(facts)),
       fmt::format("best cost\t{:.3f}", facts.best_cost),
       fmt::format("mean cost\t{:.3f}", facts.mean_cost)};

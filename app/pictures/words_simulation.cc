@@ -33,8 +33,8 @@ std::string ExplainMotion(const std::string& name, const SimulationFacts& facts,
                           const std::vector<FingerStory>& fingers) {
   const bool moved = facts.moved_mm > 1.0 || DegToRad(facts.rotated_deg) > 0.01;
   if (fingers.empty()) {
-    return moved ? fmt::format("Nothing touches the {} and it moves by itself.", name)
-                 : fmt::format("Nothing touches the {} and it stays at rest.", name);
+    return moved ? fmt::format("No finger touches the {} and it moves by itself.", name)
+                 : fmt::format("No finger touches the {} and it stays at rest.", name);
   }
   const FingerStory* pushing = &fingers.front();
   for (const FingerStory& story : fingers) {
@@ -87,7 +87,8 @@ std::string DescribeAction(const Scene& scene, const StepFacts& step, const Step
     }
     default:
       if (options.contains("steps")) {
-        return fmt::format("{} physics steps.", options.at("steps").get<int>());
+        const int steps = options.at("steps").get<int>();
+        return fmt::format("{} physics step{}.", steps, steps == 1 ? "" : "s");
       }
       return fmt::format("Nothing is moved for {:.3g} s.", options.at("seconds").get<double>());
   }

@@ -107,7 +107,11 @@ TrainingObject ReadObject(const fs::path& folder, const MeshEntry& entry) {
   TrainingObject object{entry.family, fs::path(entry.file).stem().string(), mesh};
   LoadShape(object.shape, folder, (folder / entry.file).string(), "");
   const Vector3 centre = CalcBounds(object.shape).center();
-  std::get<Mesh>(object.shape).mesh.V.rowwise() -= centre.transpose();
+  if (auto* whole = std::get_if<Union>(&object.shape)) {  // a file of several solids
+    for (PlacedShape& part : whole->parts) part.X_BP.translation() -= centre;
+  } else {
+    std::get<Mesh>(object.shape).mesh.V.rowwise() -= centre.transpose();
+  }
   object.mass =
       entry.mass.value_or(std::max(kLeastMass, kObjectDensity * CalcVolume(object.shape)));
   return object;

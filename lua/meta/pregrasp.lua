@@ -53,7 +53,8 @@ function pregrasp.capsule(size) end
 ---@return Shape
 function pregrasp.sphere(size) end
 
----A closed triangle mesh: mesh{"cup.stl", scale = 0.001}. Looked for beside the scene first.
+---A closed triangle mesh, or the union of several in one file: mesh{"cup.stl", scale = 0.001}. Looked for beside the
+---scene first.
 ---@param file FileTable
 ---@return Shape
 function pregrasp.mesh(file) end
@@ -502,7 +503,7 @@ function Optimizer:back(steps) end
 ---@return Optimizer
 function Optimizer:fork(options) end
 
----The plans of the last iteration: the first is the mean, the second the best so far.
+---The plans of the last iteration. Where there was a best plan before it, the first is the mean, the second that plan.
 ---@return Rollout[]
 function Optimizer:rollouts() end
 

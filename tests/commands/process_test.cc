@@ -135,7 +135,7 @@ TEST(ProcessTest, ScenesInOtherUnitsAreRefusedWithTheLikelyCause) {
     return result.err;
   };
   EXPECT_EQ(check("shape = box{12.5, 4.0, 20.0}, mass = 0.5, p = {0, 0, 10}"),
-            "scene.lua:1: object.shape: expected an object at most 5 m long, in metres (60 mm are "
+            "scene.lua:1: object.shape: expected an object at most 10 m long, in metres (60 mm are "
             "0.06), got one of 20 m\n");
   EXPECT_EQ(check("shape = box{4, 4, 4}, mass = 0.5, p = {0, 0, 2}"),
             "scene.lua:1: object.mass: expected a mass in kg of 0.1 to 1e+06 kg/m^3, of a shape in "

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <regex>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "app/geometry/read_in_child.h"
 #include "app/geometry/read_mesh.h"
 #include "app/geometry/signed_distance.h"
+#include "app/scene/shape_visit.h"
 #include "tests/geometry/test_shapes.h"
 #include "tests/geometry/write_mesh.h"
 
@@ -46,13 +48,16 @@ class LoadShapeTest : public ::testing::Test {
     std::ofstream(directory_ / name, std::ios::binary) << text;
   }
 
-  TriangleMesh Load(const std::string& name, double scale = 1.0) const {
+  Shape LoadAny(const std::string& name, double scale = 1.0) const {
     Mesh mesh;
     mesh.file = name;
     mesh.scale = scale;
     Shape shape = mesh;
     LoadShape(shape, directory_, "a.lua:7", "object.shape");
-    return std::get<Mesh>(shape).mesh;
+    return shape;
+  }
+  TriangleMesh Load(const std::string& name, double scale = 1.0) const {
+    return std::get<Mesh>(LoadAny(name, scale)).mesh;
   }
 
   // The message, and that it is an InputError of the right place.
@@ -259,12 +264,86 @@ TEST_F(LoadShapeTest, AComponentInsideAnotherIsACavityWhateverItsOrientation) {
   EXPECT_LT(distance.Calc({5, 0, 0}), 0.0);
 }
 
+// A cup and its handle, a knob sunk into a lid: two closed surfaces that go through each other.
+TEST_F(LoadShapeTest, SolidsThatOverlapAreTheirUnion) {
+  TriangleMesh lid = Tessellate(Box{Vector3(0.08, 0.08, 0.01)});
+  AppendMesh(lid, Transformed(Tessellate(Box{Vector3(0.03, 0.02, 0.03)}), At(0.01, 0.02, 0.016)));
+  Write("lid.obj", testing::ObjText(lid));
+  const Shape shape = LoadAny("lid.obj");
+  const double sunk = 0.03 * 0.02 * 0.004, volume = 6.4e-5 + 1.8e-5 - sunk;
+  EXPECT_NEAR(CalcVolume(shape), volume, 1e-4 * volume);
+  const Vector3 first = 1.8e-5 * Vector3(0.01, 0.02, 0.016) - sunk * Vector3(0.01, 0.02, 0.003);
+  EXPECT_LT((CalcMassProperties(shape, 1.0).p_BoBcm - first / volume).norm(), 1e-6);
+  const SignedDistance distance(shape);
+  EXPECT_NEAR(distance.Calc(Vector3(0.01, 0.02, 0.002)), -0.003, 1e-9);
+  EXPECT_NEAR(distance.Calc(Vector3(-0.02, -0.02, 0.009)), 0.004, 1e-9);
+}
+
+// Along an edge, or along faces with other triangles on either side.
+TEST_F(LoadShapeTest, PartsWithCornersOfTheirOwnMayTouchAlongThem) {
+  const TriangleMesh cube = WeldVertices(Tessellate(Box{Vector3(0.1, 0.1, 0.1)}), 0.0);
+  const TriangleMesh tower = WeldVertices(Tessellate(Box{Vector3(0.1, 0.1, 0.2)}), 0.0);
+  TriangleMesh beside = cube;
+  AppendMesh(beside, Transformed(cube, At(0.1, 0.1, 0)));
+  AppendMesh(beside, Transformed(tower, At(0, 0.1, 0)));
+  Write("beside.ply", testing::PlyText(beside, "ascii"));
+  const Shape shape = LoadAny("beside.ply");
+  EXPECT_EQ(std::get<Union>(shape).parts.size(), 3U);
+  EXPECT_NEAR(CalcVolume(shape), 4e-3, 1e-6);
+}
+
+TEST_F(LoadShapeTest, TheWallBetweenSolidsThatShareAFaceIsLeftOut) {
+  TriangleMesh two = Tessellate(Box{Vector3(0.1, 0.1, 0.1)});
+  AppendMesh(two, Transformed(Tessellate(Box{Vector3(0.1, 0.1, 0.1)}), At(0.1, 0, 0)));
+  Write("two.stl", testing::BinaryStl(two));
+  const TriangleMesh mesh = Load("two.stl");
+  EXPECT_EQ(mesh.F.rows(), 20);
+  EXPECT_NEAR(CalcVolume(mesh), 2e-3, 1e-9);
+}
+
+TEST_F(LoadShapeTest, ManyClosedPartsAreRefusedBeforeTheyAreCompared) {
+  const TriangleMesh tetrahedron = [] {
+    TriangleMesh mesh;
+    mesh.V.resize(4, 3);
+    mesh.V << 0, 0, 0, 0.004, 0, 0, 0, 0.004, 0, 0, 0, 0.004;
+    mesh.F.resize(4, 3);
+    mesh.F << 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2;
+    return mesh;
+  }();
+  const auto row = [&](int count, double step) {
+    TriangleMesh mesh;
+    mesh.V.resize(4 * count, 3);
+    mesh.F.resize(4 * count, 3);
+    for (int i = 0; i < count; ++i) {
+      const TriangleMesh one = Transformed(tetrahedron, At(step * i, 0, 0));
+      mesh.V.middleRows(4 * i, 4) = one.V;
+      mesh.F.middleRows(4 * i, 4) = one.F.array() + 4 * i;
+    }
+    return mesh;
+  };
+  Write("dust.obj", testing::ObjText(row(10'001, 0.005)));
+  EXPECT_NE(Refusal("dust.obj")
+                .find("at most 10000 closed parts, got \"dust.obj\", which has "
+                      "10001"),
+            std::string::npos)
+      << Refusal("dust.obj");
+  Write("chain.obj", testing::ObjText(row(65, 0.003)));
+  EXPECT_NE(Refusal("chain.obj").find("at most 64 closed parts that touch or overlap"),
+            std::string::npos)
+      << Refusal("chain.obj");
+}
+
 TEST_F(LoadShapeTest, SplitsAVertexThatTwoSolidsShare) {
   TriangleMesh two = Tessellate(Box{Vector3(1, 1, 1)});
   AppendMesh(two, Transformed(Tessellate(Box{Vector3(1, 1, 1)}), At(1, 1, 1)));
   Write("pinched.obj", testing::ObjText(two));
-  const TriangleMesh loaded = Load("pinched.obj");
-  EXPECT_EQ(loaded.V.rows(), 16);
+  const Shape loaded = LoadAny("pinched.obj");
+  Eigen::Index corners = 0;
+  ForEachLeaf(loaded, RigidTransform::Identity(), [&](const Shape& leaf, const RigidTransform&) {
+    corners += std::get<Mesh>(leaf).mesh.V.rows();
+  });
+  EXPECT_EQ(corners, 16);
+  EXPECT_NEAR(CalcVolume(loaded), 2.0, 1e-9);
 }
 
 TEST_F(LoadShapeTest, RefusesAnOpenMeshAndCountsItsOpenEdges) {
@@ -405,10 +484,15 @@ TEST_F(LoadShapeTest, RefusesACloudThatIsNone) {
   TriangleMesh few = Tessellate(Box{Vector3(1, 1, 1)});
   few.F.resize(0, 3);
   Write("few.ply", testing::PlyText(few, "ascii"));
+  Write("lost.ply",
+        std::regex_replace(testing::PlyText(few, "ascii"), std::regex("\n0.5 "), "\nnan "));
   Write("cut.ply", testing::PlyText(few, "ascii").substr(0, 150));
   Write("a.obj", testing::ObjText(Tessellate(Box{Vector3(1, 1, 1)})));
   EXPECT_EQ(refusal("few.ply"),
             "a.lua:7: object.shape: expected at least 100 points, got \"few.ply\", which has 8");
+  EXPECT_EQ(refusal("lost.ply"),
+            "a.lua:7: object.shape: expected a cloud of the points that were seen, with the others "
+            "left out, got \"lost.ply\", in which 4 of 8 points are not finite");
   EXPECT_EQ(refusal("cut.ply").rfind("a.lua:7: object.shape: expected a PLY file", 0), 0U);
   EXPECT_NE(refusal("a.obj").find(".ply"), std::string::npos);
   EXPECT_NE(refusal("gone.ply").find("does not exist"), std::string::npos);

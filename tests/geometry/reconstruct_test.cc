@@ -148,6 +148,34 @@ TEST(ReconstructTest, RefusesWhatIsNoClosedSurface) {
   EXPECT_THROW(ReconstructSurface(SampleByChance(cup, 2000, 0.0, Rng(3)).P, none), UnclosedCloud);
 }
 
+// What is wrong with a cloud is said as it is, not as holes that come of it.
+TEST(ReconstructTest, RefusesASideAloneAndATableWithTheirReasons) {
+  const MatrixX3 all = SamplePointCloud(Box{Vector3(0.09, 0.07, 0.05)}, 4000, Rng(7)).P;
+  const auto refusal = [](const std::vector<Vector3>& points) -> std::string {
+    MatrixX3 P(static_cast<Eigen::Index>(points.size()), 3);
+    for (std::size_t i = 0; i < points.size(); ++i) P.row(static_cast<Eigen::Index>(i)) = points[i];
+    try {
+      ReconstructSurface(P, MatrixX3(0, 3));
+    } catch (const UnclosedCloud& error) {
+      return error.got;
+    }
+    return "accepted";
+  };
+  std::vector<Vector3> seen, standing;
+  for (int i = 0; i < all.rows(); ++i) {
+    const Vector3 p = all.row(i);
+    if (p.x() > 0.0449 || p.z() > 0.0249) seen.push_back(p);
+    standing.push_back(p);
+  }
+  for (double x = -0.15; x < 0.15; x += 0.003) {
+    for (double y = -0.12; y < 0.12; y += 0.003) standing.emplace_back(x, y, -0.025);
+  }
+  EXPECT_EQ(refusal(seen).find("whose points end along a rim"), 0U) << refusal(seen);
+  EXPECT_NE(refusal(standing).find("lie in a sheet that reaches beyond all others"),
+            std::string::npos)
+      << refusal(standing);
+}
+
 TEST(ReconstructTest, IsTheSameEachTime) {
   const MatrixX3 P = SampleByChance(Capsule{0.02, 0.05}, 2000, 0.0, Rng(4)).P;
   EXPECT_EQ(ReconstructSurface(P, MatrixX3(0, 3)).mesh.V,

@@ -56,8 +56,31 @@ TEST(BalanceProofTest, TopAndFrontOfABoxCarryNothingUpToFrictionOne) {
   EXPECT_FALSE(FindBalanceProof(contacts, 1.01, kGravity, kScale).impossible);
   // The proof's cones lie around the pyramids with 32 edges that check it.
   const double limit = std::cos(kPi / 32.0);
-  EXPECT_LE(FindProofLimit(contacts, kGravity, kScale), limit);
-  EXPECT_GE(FindProofLimit(contacts, kGravity, kScale), limit - 1.1 * kProofLimitStep);
+  const double mu_star = FindProofLimit(contacts, kGravity, kScale, 0.0).mu;
+  EXPECT_LE(mu_star, limit);
+  EXPECT_GE(mu_star, limit - 1.1 * kProofLimitStep);
+}
+
+// What is said to be proved up to mu* is proved there, and below it, between the points too.
+TEST(BalanceProofTest, TheLimitIsThatOfAProofThatCoversWhatLiesBetweenThePoints) {
+  Rng rng(3, RngStream::kTest);
+  // On both sides of a bar, tilted so that the proof needs torques.
+  std::vector<WrenchContact> contacts = TopAndFront(rng, 200);
+  for (int i = 0; i < 20; ++i) {
+    contacts.push_back({{0.1, 0.02 * rng.Normal(), 0.01 * rng.Normal()}, {0, 0, 1}});
+  }
+  double before = 4.0;
+  for (const double spacing : {0.0, 0.002, 0.02, 1.0}) {
+    const ProofLimit limit = FindProofLimit(contacts, kGravity, kScale, spacing);
+    EXPECT_LE(limit.mu, before) << "a wider spacing proves no more";
+    before = limit.mu;
+    if (limit.mu == 0.0) continue;
+    EXPECT_GE(limit.proof.covered, spacing);
+    for (const double share : {1.0, 0.7}) {
+      const double mu = share * std::min(limit.mu, kMostProofFriction);
+      EXPECT_GT(CalcProofSlack(contacts, mu, kGravity, kScale, limit.proof.direction), 0.0);
+    }
+  }
 }
 
 TEST(BalanceProofTest, OnTheBoundaryForcesCancelOutAndStillCarryNothing) {

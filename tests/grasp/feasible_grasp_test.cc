@@ -110,9 +110,9 @@ TEST(FeasibleGraspTest, EachFailureNamesTheFirstDemandThatIsNotMet) {
                     OnSide(Finger::kMiddle, 1, -0.02, 0)}),
             GraspStatus::kNoInternalForces);
   // Three fingers push the same way with 0.5 N at least.
-  EXPECT_EQ(
-      sentence,
-      "thumb, index, middle: no forces within the cones cancel out; those tried miss by 1.50 N");
+  EXPECT_EQ(sentence,
+            "thumb, index, middle: no forces within cones and limits cancel out; those tried miss "
+            "by 1.50 N");
   // The centre of mass lies far below the line on which they press.
   Scene heavy = FreeCartonScene();
   heavy.object().mass_properties->mass = 5.0;

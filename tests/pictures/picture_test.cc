@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "app/core/error.h"
+#include "app/geometry/mass_properties.h"
 #include "app/geometry/tessellate.h"
+#include "app/graph/path_explorer.h"
 #include "app/job/timeline.h"
 #include "app/pictures/camera.h"
 #include "app/pictures/forces.h"
 #include "app/pictures/overlay.h"
 #include "app/pictures/words.h"
+#include "render/camera.h"
 #include "render/palette.h"
 #include "tests/job/fixture.h"
 
@@ -104,6 +107,32 @@ TEST_F(PictureMakerTest, TheAutomaticCameraHasTheObjectInSightWhereverItIs) {
     MatrixX3 ends(2, 3);
     ends << x - 0.15, 0, 0, x + 0.15, 0, 0;
     EXPECT_TRUE(IsInSight(scene.camera, ends, 1280.0 / 720.0, 0.0)) << x;
+  }
+}
+
+// Whatever its size, the object is what a picture shows: arrows and points do not hide it.
+TEST(PictureSizeTest, AnObjectOfAnySizeIsLargeInTheMiddle) {
+  for (const double edge : {0.0015, 0.006, 0.05, 0.8, 7.0}) {
+    JobSetup setup;
+    setup.scene = MakeRulerScene();
+    Body& cube = setup.scene.bodies[0];
+    cube.shape = Box{Vector3::Constant(edge)};
+    cube.X_WB.translation() = Vector3(-0.1, 0.0, 0.5 * edge);
+    // Heavy enough for an arrow of its weight.
+    cube.mass_properties = CalcMassProperties(cube.shape, 1e-3 + 300.0 * std::pow(edge, 3.0));
+    Job job(setup, 1);
+    const Timeline timeline(job);
+    const RenderScene scene =
+        PictureMaker(job.scene()).Compose(timeline.root().facts, timeline, {}, {});
+    const CameraView view = MakeCameraView(scene.camera, 1280, 720);
+    const auto top = view.Project(cube.X_WB.translation() + 0.5 * edge * Vector3::UnitZ());
+    const auto bottom = view.Project(cube.X_WB.translation() - 0.5 * edge * Vector3::UnitZ());
+    ASSERT_TRUE(top && bottom) << edge;
+    EXPECT_GT(bottom->y() - top->y(), 100.0) << edge;
+    EXPECT_NEAR(bottom->x(), 640.0, 160.0) << edge;
+    EXPECT_NEAR(0.5 * (bottom->y() + top->y()), 360.0, 180.0) << edge;
+    EXPECT_FALSE(scene.arrows.empty());
+    for (const RenderArrow& arrow : scene.arrows) EXPECT_LT(arrow.radius, 0.1 * edge);
   }
 }
 
@@ -269,7 +298,7 @@ TEST_F(PictureMakerTest, TheWordsSayWhatDecidedTheMotion) {
   EXPECT_EQ(lines[2].find("ruler moved\t2"), 0U) << lines[2];
   const Node& waited = timeline_.Do(timeline_.root(), Verb::kWait, {{"seconds", 0.1}});
   EXPECT_EQ(DescribeStep(job_.scene(), waited.facts, timeline_)[1],
-            "Nothing touches the ruler and it stays at rest.");
+            "No finger touches the ruler and it stays at rest.");
 }
 
 TEST_F(PictureMakerTest, TheWordsSayThatALightTouchSlidesOverTheRuler) {
@@ -277,6 +306,46 @@ TEST_F(PictureMakerTest, TheWordsSayThatALightTouchSlidesOverTheRuler) {
   const auto lines = DescribeStep(job_.scene(), Pull(Press(0.05, 0.001), 0.03).facts, timeline_);
   EXPECT_EQ(lines[1].find("The index slides "), 0U) << lines[1];
   EXPECT_NE(lines[1].find("over the ruler, which stays."), std::string::npos) << lines[1];
+}
+
+// The first sentence that a step of planning gets.
+template <typename Facts>
+std::string FirstSentence(Facts facts) {
+  StepFacts step;
+  step.details = std::move(facts);
+  return internal::DescribePlanning(MakeRulerScene(), step).front();
+}
+
+TEST(PlanningWordsTest, SayWhatWasSimulatedAndWhatEndedIt) {
+  IterationFacts facts;
+  facts.iteration = 4;
+  facts.limit = 15;
+  facts.rollouts.resize(48);
+  const std::string going_on = FirstSentence(facts);
+  EXPECT_EQ(going_on.find("Iteration 4: 48 plans, of noise about the mean or of steady pushes"),
+            0U);
+  EXPECT_EQ(going_on.find("ends it"), std::string::npos);
+  facts.end = "limit";
+  EXPECT_NE(FirstSentence(facts).find("The limit of 15 iterations ends it."), std::string::npos);
+  facts.end = "patience";
+  EXPECT_NE(FirstSentence(facts).find("the best cost hardly falls any more."), std::string::npos);
+}
+
+TEST(PlanningWordsTest, SayWhatAPathIsTheBestOfAndWhenItsScoreIsTheFloor) {
+  PathFacts facts;
+  facts.order = "explore";
+  facts.rank = 3;
+  facts.nodes.resize(1);
+  facts.terms = {0.2};
+  facts.repeats = 1.5;
+  facts.value = 0.4;
+  EXPECT_EQ(
+      FirstSentence(facts),
+      "Path 3: of all first states that a fingertip can touch and that no path has tried, the "
+      "best by its score over 1 + 1.5, for what the paths before it have in common with it.");
+  facts.value = PathExplorer::kLeastScore / 2.5;
+  EXPECT_NE(FirstSentence(facts).find(" Scores below 5 % of the best count as that."),
+            std::string::npos);
 }
 
 }  // namespace

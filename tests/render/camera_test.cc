@@ -12,7 +12,10 @@ namespace {
 
 MatrixX3 RandomBox(Rng& rng) {
   const Vector3 center = rng.Uniform(0.0, 2.0) * rng.Direction();
-  const Vector3 half(rng.Uniform(0.005, 0.5), rng.Uniform(0.005, 0.5), rng.Uniform(0.001, 0.3));
+  // From a bead to a large box.
+  const double size = std::pow(10.0, rng.Uniform(-2.5, 0.0));
+  const Vector3 half =
+      size * Vector3(rng.Uniform(0.005, 0.5), rng.Uniform(0.005, 0.5), rng.Uniform(0.001, 0.3));
   MatrixX3 points(8, 3);
   for (int i = 0; i < 8; ++i) {
     const Vector3 sign((i & 1) * 2 - 1, ((i >> 1) & 1) * 2 - 1, (i >> 2) * 2 - 1);
@@ -44,7 +47,7 @@ TEST(FrameCameraTest, ShowsEveryPointWithABorderAndIsAsNearAsThatAllows) {
     EXPECT_LE(high.y(), 0.891 * height) << seed;
     // Tight along one axis, unless the smallest distance keeps the camera off.
     const bool tight = high.x() - low.x() > 0.79 * width || high.y() - low.y() > 0.73 * height;
-    const double nearest = (focus * view.R_WCam.col(2)).maxCoeff() + 0.1;
+    const double nearest = (focus * view.R_WCam.col(2)).maxCoeff() + 2e-3;
     EXPECT_TRUE(tight || view.p_WCam.dot(view.R_WCam.col(2)) < nearest + 1e-9) << seed;
   }
 }
