@@ -186,10 +186,10 @@ TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
   EXPECT_NE(result.out.find(" 1.2 "), std::string::npos);
   EXPECT_EQ(result.out.find("\nscene\n"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find(" 0.5\n"), std::string::npos);
-  const fs::path rough = MakeFailingRun("rough", {"--set", "environment.table.friction=0.35"});
+  const fs::path rough = MakeFailingRun("rough", {"--set", "object.friction=0.25"});
   result = RunProgram({"diff", one.string(), rough.string()}, folder_);
   EXPECT_EQ(result.out.rfind("path.1.screen.1: ", 0), 0U) << result.out;
-  EXPECT_NE(result.out.find("\nscene\n  bodies[1].friction"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("\nscene\n  bodies[0].friction"), std::string::npos) << result.out;
 }
 
 // The main job with the weights that ship, with pictures of key steps.
