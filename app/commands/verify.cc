@@ -34,8 +34,9 @@ int ReportOtherBuild(const std::string& run, const Verification& verification) {
   std::string text =
       fmt::format("{}: made by another build ({}): ", run, verification.provenance.build);
   text += comparison.decision() ? "not every decision is the same"
-                                : fmt::format("{} steps recomputed, every decision is the same",
-                                              verification.num_steps);
+                                : fmt::format("{} steps recomputed, every decision{} is the same",
+                                              verification.num_steps,
+                                              comparison.largest() ? "" : " and every number");
   if (comparison.largest()) {
     text += fmt::format("; the largest difference is {:.2g}, {}",
                         *comparison.largest()->value.distance, Tell(*comparison.largest()));

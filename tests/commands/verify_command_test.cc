@@ -163,6 +163,14 @@ TEST_F(VerifyCommandTest, OtherWeightsAndOtherVersionsAreRefusedInClearWords) {
             std::string::npos)
       << result.err;
   nlohmann::ordered_json manifest = nlohmann::ordered_json::parse(ReadText(run / "manifest.json"));
+  manifest["compiler"] = "another 1.0";
+  manifest["program_sha256"] = std::string(64, '0');
+  WriteFile(run / "manifest.json", FormatJsonIndented(manifest));
+  Reseal(run);
+  result = Verify(run);
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find(", another 1.0, "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("every decision and every number is the same"), std::string::npos);
   manifest["planner_version"] = "9.9.9";
   WriteFile(run / "manifest.json", FormatJsonIndented(manifest));
   Reseal(run);
