@@ -11,6 +11,7 @@
 #include "app/recording/build_info.h"
 #include "bindings/lua_grasp.h"
 #include "bindings/lua_planner.h"
+#include "bindings/lua_run.h"
 #include "bindings/lua_scene.h"
 #include "bindings/lua_session.h"
 #include "bindings/sandbox.h"
@@ -136,9 +137,10 @@ Api MakeApi() {
   api.functions.push_back(&OpenFunction());
   for (const FunctionInfo& constructor : SceneConstructors()) api.functions.push_back(&constructor);
   for (const FunctionInfo& function : GraspFunctions()) api.functions.push_back(&function);
+  for (const FunctionInfo& function : RunFunctions()) api.functions.push_back(&function);
   for (const FunctionInfo* function : api.functions) module.keys.push_back(function->name);
   api.module = &module;
-  api.classes = {&SessionClass(), &SimulationClass()};
+  api.classes = {&SessionClass(), &SimulationClass(), &RunClass()};
   for (const ClassInfo* scene_class : SceneClasses()) api.classes.push_back(scene_class);
   for (const ClassInfo* stage : PlannerClasses()) api.classes.push_back(stage);
   api.schemas = {&kOpenOptions};

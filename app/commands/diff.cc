@@ -1,12 +1,16 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/commands/commands.h"
-#include "app/job/facts_json.h"
-#include "app/recording/loaded_run.h"
+#include "app/core/error.h"
+#include "app/core/json_text.h"
+#include "app/core/text.h"
+#include "app/recording/checked_file.h"
+#include "app/recording/manifest.h"
+#include "app/recording/run_comparison.h"
 
 namespace pregrasp {
 namespace {
@@ -15,27 +19,53 @@ struct DiffOptions {
   std::string left, right;
 };
 
+nlohmann::ordered_json Read(const std::string& run, const char* file) {
+  const std::filesystem::path path = std::filesystem::path(run) / file;
+  ParseJson(ReadFile(path), path.string());
+  return nlohmann::ordered_json::parse(ReadFile(path));
+}
+
+// Two documents side by side, where they differ.
+void PrintSideBySide(const std::string& title, const nlohmann::ordered_json& left,
+                     const nlohmann::ordered_json& right) {
+  bool first = true;
+  VisitDifferences(left, right, [&](const JsonDifference& difference) {
+    if (first) fmt::print("{}\n", title);
+    first = false;
+    fmt::print("  {:<34} {:<24} {}\n", difference.field, OneLine(difference.left),
+               OneLine(difference.right));
+    return true;
+  });
+}
+
 int Diff(const DiffOptions& options) {
-  const LoadedRun left = LoadRun(options.left), right = LoadRun(options.right);
-  const std::size_t count = std::min(left.steps.size(), right.steps.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const StepFacts &a = left.steps[i], &b = right.steps[i];
-    if (a.id != b.id) {
-      fmt::print("step {}: {} and {}\n", i + 1, a.id, b.id);
-      return 0;
-    }
-    if (const auto difference = CompareFacts(a, b)) {
-      fmt::print("step {}, {}: {}: {} and {}\n", i + 1, a.id, difference->field, difference->left,
-                 difference->right);
-      return 0;
+  for (const std::string& run : {options.left, options.right}) {
+    if (!IsFinishedRun(run)) {
+      throw InputError(run, "", "a finished run", "a folder without its manifest.json");
     }
   }
-  if (left.steps.size() != right.steps.size()) {
-    fmt::print("the first {} steps are the same; then one ends, of {} and {}\n", count,
-               left.steps.size(), right.steps.size());
+  RunComparison comparison(0.0);
+  comparison.CompareRuns(options.left, options.right);
+  if (!comparison.first()) {
+    fmt::print("every step and every file the same\n");
     return 0;
   }
-  fmt::print("{} steps, all facts the same\n", count);
+  fmt::print("{}\n", comparison.first()->Sentence("one says", "the other"));
+  PrintSideBySide("scene", Read(options.left, "scene.json"), Read(options.right, "scene.json"));
+  const nlohmann::ordered_json left = Read(options.left, "manifest.json"),
+                               right = Read(options.right, "manifest.json");
+  for (const char* field : {"seed", "configuration"}) {
+    PrintSideBySide(field, {{field, left.value(field, nlohmann::ordered_json())}},
+                    {{field, right.value(field, nlohmann::ordered_json())}});
+  }
+  nlohmann::ordered_json results[] = {Read(options.left, "summary.json"),
+                                      Read(options.right, "summary.json")};
+  for (nlohmann::ordered_json& summary : results) {
+    for (const char* field : {"seconds", "peak_rss_mb", "hash"}) {
+      if (summary.is_object()) summary.erase(field);
+    }
+  }
+  PrintSideBySide("summary", results[0], results[1]);
   return 0;
 }
 
@@ -43,8 +73,9 @@ int Diff(const DiffOptions& options) {
 
 void AddDiff(const Subcommand& app, Action& action) {
   auto options = std::make_shared<DiffOptions>();
-  const Subcommand command =
-      app.AddCommand("diff", "Say where two finished runs first differ: step, field, both values");
+  const Subcommand command = app.AddCommand(
+      "diff",
+      "Say where two finished runs first differ, and their settings and results side by side");
   command.Add("RUN_DIR", options->left, "One run directory").Required();
   command.Add("RUN_DIR_2", options->right, "The other").Required();
   command.OnChosen([options, &action] { action = [options] { return Diff(*options); }; });

@@ -34,17 +34,6 @@ std::string FindInCpuInfo(const std::string& key) {
   return "unknown";
 }
 
-std::string CpuFeatures() {
-  const std::string flags = fmt::format(" {} ", FindInCpuInfo("flags"));
-  std::string features;
-  for (const char* feature : {"sse4_2", "avx", "avx2", "fma", "avx512f"}) {
-    if (flags.find(std::string(" ") + feature + " ") != std::string::npos) {
-      features += std::string(features.empty() ? "" : " ") + feature;
-    }
-  }
-  return features.empty() ? "none of sse4_2, avx, avx2, fma, avx512f" : features;
-}
-
 std::string Weights() {
   namespace fs = std::filesystem;
   std::map<std::string, std::uintmax_t> files;
@@ -85,7 +74,7 @@ int Info() {
   Line("opengl", Renderer().description());
   Line("weights", Weights());
   Line("processor", fmt::format("{}, {} threads, {}", FindInCpuInfo("model name"),
-                                std::thread::hardware_concurrency(), CpuFeatures()));
+                                std::thread::hardware_concurrency(), ProcessorFeatures()));
   return 0;
 }
 

@@ -36,6 +36,8 @@ struct RunOptions {
 // The command that does the same again; pictures say it in their footer.
 std::string CommandLine(const RunOptions& options) {
   std::string line = fmt::format("pregrasp run {} --seed {}", options.scene, options.seed);
+  if (options.run.paths != RunConfig{}.paths) line += fmt::format(" --paths {}", options.run.paths);
+  if (options.run.all) line += " --all";
   for (const std::string& setting : options.settings) line += " --set " + setting;
   return line;
 }

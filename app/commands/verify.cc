@@ -6,13 +6,8 @@
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
 #include "app/core/data_folder.h"
-#include "app/core/error.h"
-#include "app/core/interrupt.h"
-#include "app/job/facts_json.h"
-#include "app/job/planner_settings.h"
-#include "app/recording/build_info.h"
-#include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
+#include "app/session/verification.h"
 
 namespace pregrasp {
 namespace {
@@ -29,67 +24,52 @@ int Refuse(const std::string& run, const std::string& why) {
   return kBadRun;
 }
 
-std::string Describe(const FactsDifference& difference, const std::string& step) {
-  return fmt::format("{}: {}: the run says {}, recomputed it is {}", step, difference.field,
-                     difference.left, difference.right);
+std::string Tell(const RunDifference& difference) {
+  return difference.Sentence("the run says", "recomputed it is");
 }
 
-JobSetup MakeSetup(const LoadedRun& run, const VerifyOptions& options) {
-  JobSetup setup;
-  setup.scene = run.scene;
-  setup.seed = run.summary.seed;
-  setup.weights = options.weights.empty() ? DataFolder() / "assets" / "weights"
-                                          : std::filesystem::path(options.weights);
-  const auto settings = run.manifest.find("settings_at_start");
-  if (settings == run.manifest.end()) {
-    throw InputError((run.directory / "manifest.json").string(), "settings_at_start",
-                     "the settings that the run began with", "none: another version's run");
+// Of a run of another build: what differs, and whether the planner decided alike.
+int ReportOtherBuild(const std::string& run, const Verification& verification) {
+  const RunComparison& comparison = verification.comparison;
+  std::string text =
+      fmt::format("{}: made by another build ({}): ", run, verification.provenance.build);
+  text += comparison.decision() ? "not every decision is the same"
+                                : fmt::format("{} steps recomputed, every decision{} is the same",
+                                              verification.num_steps,
+                                              comparison.largest() ? "" : " and every number");
+  if (comparison.largest()) {
+    text += fmt::format("; the largest difference is {:.2g}, {}",
+                        *comparison.largest()->value.distance, Tell(*comparison.largest()));
   }
-  ApplySettings(*settings, setup.config);
-  return setup;
-}
-
-// Applies the journal again. @returns what differs first; "" for nothing.
-std::string Replay(const LoadedRun& run, const VerifyOptions& options) {
-  Job job(MakeSetup(run, options), options.threads);
-  Timeline timeline(job);
-  if (run.journal.size() != run.steps.size()) {
-    return fmt::format("journal.jsonl has {} commands for {} steps", run.journal.size(),
-                       run.steps.size());
+  if (comparison.first()) {
+    text += fmt::format("; the first beyond {:g} is {}", kOtherBuildTolerance,
+                        Tell(*comparison.first()));
   }
-  ProgressLine line;
-  for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    ThrowIfInterrupted();
-    line.Show("verifying steps", static_cast<int>(i), static_cast<int>(run.steps.size()));
-    const StepFacts& told = run.steps[i];
-    if (!(told.command == run.journal[i])) {
-      return fmt::format("{}: command: the journal has another one", told.id);
-    }
-    const Timeline::Node& node = i == 0 ? timeline.root()
-                                        : timeline.Do(timeline.Find(told.command.node),
-                                                      told.command.verb, told.command.options);
-    const auto difference = CompareFacts(told, node.facts);
-    if (difference) return Describe(*difference, told.id);
+  if (comparison.decision()) {
+    text += fmt::format("; the first decision that differs is {}", Tell(*comparison.decision()));
   }
-  return "";
+  fmt::print(comparison.first() ? stderr : stdout, "{}\n", text);
+  return comparison.first() ? kBadRun : 0;
 }
 
 int Verify(const VerifyOptions& options) {
   const auto mismatch = VerifyManifest(options.run);
   if (mismatch) return Refuse(options.run, mismatch->Sentence());
-  const LoadedRun run = LoadRun(options.run);
-  std::string difference;
-  try {
-    difference = Replay(run, options);
-  } catch (const InputError& error) {
-    difference = fmt::format("a command cannot be applied: {}", error.what());
+  VerifyConfig config;
+  config.threads = options.threads;
+  config.weights = options.weights.empty() ? DataFolder() / "assets" / "weights"
+                                           : std::filesystem::path(options.weights);
+  Verification verification;
+  {
+    ProgressLine line;
+    config.progress = [&](int done, int total) { line.Show("verifying steps", done, total); };
+    verification = VerifyRun(options.run, config);
   }
-  if (!difference.empty()) {
-    const std::string build = run.manifest.value("git_hash", "");
-    if (build != GitHash()) difference += fmt::format(" (the run is of build {})", build);
-    return Refuse(options.run, difference);
+  if (!verification.provenance.same_build) return ReportOtherBuild(options.run, verification);
+  if (verification.comparison.first()) {
+    return Refuse(options.run, Tell(*verification.comparison.first()));
   }
-  fmt::print("{}: {} steps recomputed, all facts the same\n", options.run, run.steps.size());
+  fmt::print("{}: {} steps recomputed, every file the same\n", options.run, verification.num_steps);
   return 0;
 }
 

@@ -49,6 +49,9 @@ GraspFacts MakeGraspFacts(const JobState& state, int entry) {
     facts.tip_error_mm = 1e3 * ik.tip_error;
     facts.clearance_mm = 1e3 * ik.clearance;
   }
+  if (result.fault.overlap) {
+    facts.colliding = {result.fault.overlap->link, result.fault.overlap->other};
+  }
   return facts;
 }
 

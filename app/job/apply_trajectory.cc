@@ -69,6 +69,13 @@ void Prepare(Application& a) {
   a.next.mppi = mppi;
 }
 
+// The world where the best plan so far leaves it.
+void SetEndOfBestPlan(Application& a, const Mppi& mppi, const MppiState& state) {
+  std::vector<TraceRow> trace;
+  mppi.Simulate(state.best_action, &trace);
+  SetWorldFacts(a.facts, a.job.world(), trace.back().state, trace.back().contacts);
+}
+
 void Screen(Application& a) {
   a.next.ForgetTrajectory();
   Prepare(a);
@@ -94,6 +101,7 @@ void Screen(Application& a) {
   facts.best = MakeCostFacts(state.best);
   facts.stages = MakeStageFacts(mppi, mppi.Decode(state.best_action).stages);
   a.facts.details = std::move(facts);
+  SetEndOfBestPlan(a, mppi, state);
   state.samples.clear();
   a.next.optimization = std::make_shared<const MppiState>(std::move(state));
 }
@@ -126,6 +134,7 @@ void Iterate(Application& a) {
     facts.rollouts.push_back(MakeRolloutFacts(mppi, sample));
   }
   a.facts.details = std::move(facts);
+  SetEndOfBestPlan(a, mppi, state);
   a.next.optimization = std::make_shared<const MppiState>(std::move(state));
 }
 

@@ -128,7 +128,7 @@ Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
 Lines Describe(const Scene& /*scene*/, const ScreenFacts& facts) {
   return {
       fmt::format("Round {} of screening: {} plans along path {} were simulated, to see whether "
-                  "it is worth more.",
+                  "it is worth more. The object is where the best of them leaves it.",
                   facts.round, facts.rollouts, facts.path),
       fmt::format("worth\t{:.3f}", facts.value),
       fmt::format("doing nothing\t{:.3f}", facts.rest_reward),
@@ -146,7 +146,8 @@ Lines Describe(const Scene& /*scene*/, const IterationFacts& facts) {
   Lines lines = {
       fmt::format("Iteration {}: {} plans, of noise about the mean or of steady pushes, were "
                   "simulated; the ghosts are where the best of them leave the object, and the mean "
-                  "moves to their average, in which the best weigh most.{}",
+                  "moves to their average, in which the best weigh most. The object is where the "
+                  "best plan so far leaves it.{}",
                   facts.iteration, facts.rollouts.size(), EndOfOptimisation(facts)),
       fmt::format("best cost\t{:.3f}", facts.best_cost),
       fmt::format("mean cost\t{:.3f}", facts.mean_cost)};

@@ -1,6 +1,7 @@
 #include "app/recording/build_info.h"
 
 #include <fmt/core.h>
+#include <gnu/libc-version.h>
 #include <mrpt/version.h>
 #include <zlib.h>
 
@@ -53,6 +54,20 @@ std::map<std::string, std::string> LoadedVersions() {
 
 }  // namespace
 
+std::string ProcessorFeatures() {
+  std::ifstream in("/proc/cpuinfo");
+  std::string flags;
+  for (std::string line; flags.empty() && std::getline(in, line);) {
+    if (line.rfind("flags", 0) == 0) flags = line + ' ';
+  }
+  std::string features;
+  for (const char* feature : {"sse4_2", "avx", "avx2", "fma", "avx512f"}) {
+    if (flags.find(std::string(" ") + feature + " ") == std::string::npos) continue;
+    features += std::string(features.empty() ? "" : " ") + feature;
+  }
+  return features.empty() ? "none of sse4_2, avx, avx2, fma, avx512f" : features;
+}
+
 std::map<std::string, std::string> BuildLibraries() {
   std::map<std::string, std::string> versions = LoadedVersions();
   versions.merge(std::map<std::string, std::string>{
@@ -60,6 +75,7 @@ std::map<std::string, std::string> BuildLibraries() {
        fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"fmt",
        fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+      {"glibc", gnu_get_libc_version()},
       {"lua", PREGRASP_LUA_VERSION},
       {"mrpt",
        fmt::format("{}.{}.{}", MRPT_VERSION >> 8, MRPT_VERSION >> 4 & 15, MRPT_VERSION & 15)},

@@ -39,6 +39,14 @@ const StepFacts& LoadedRun::Get(const std::string& id) const {
                    '"' + id + '"');
 }
 
+std::vector<Command> LoadJournal(const std::filesystem::path& directory) {
+  std::vector<Command> journal;
+  ReadLines(directory / "journal.jsonl", [&](const nlohmann::json& line, const std::string& where) {
+    journal.push_back(CommandFromJson(line, where));
+  });
+  return journal;
+}
+
 LoadedRun LoadRun(const std::filesystem::path& directory) {
   if (!IsFinishedRun(directory)) {
     throw InputError(directory.string(), "", "a finished run",
@@ -54,9 +62,7 @@ LoadedRun LoadRun(const std::filesystem::path& directory) {
     run.steps.push_back(FactsFromJson(line, where));
     run.number_of[run.steps.back().id] = static_cast<int>(run.steps.size());
   });
-  ReadLines(directory / "journal.jsonl", [&](const nlohmann::json& line, const std::string& where) {
-    run.journal.push_back(CommandFromJson(line, where));
-  });
+  run.journal = LoadJournal(directory);
   return run;
 }
 

@@ -24,6 +24,9 @@ struct LoadedRun : FactsSource {  // NOLINT(bugprone-exception-escape): moving J
   const StepFacts& Get(const std::string& id) const override;
 };
 
+/// The commands of journal.jsonl, in the order of doing. @throws InputError with file and line.
+std::vector<Command> LoadJournal(const std::filesystem::path& directory);
+
 /// @throws InputError if `directory` is not a finished run or a file of it cannot be read. Does not
 /// compare hashes: see VerifyManifest.
 LoadedRun LoadRun(const std::filesystem::path& directory);

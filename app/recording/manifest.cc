@@ -50,6 +50,19 @@ bool ProvesItself(std::string text, const std::string& hash) {
   return Sha256(text) == hash;
 }
 
+// @throws InputError if the text is a whole manifest of a run, of another schema.
+void RequireSchema(const std::string& text, const fs::path& directory) {
+  const nlohmann::json manifest = nlohmann::json::parse(text, nullptr, false);
+  if (!manifest.is_object() || manifest.value("schema", nlohmann::json()) == kRunSchema) return;
+  const nlohmann::json files = manifest.value("files", nlohmann::json());
+  const nlohmann::json own = files.is_object() ? files.value(kName, nlohmann::json()) : files;
+  if (!own.is_string() || !ProvesItself(text, own.get<std::string>())) return;
+  const nlohmann::json schema = manifest.value("schema", nlohmann::json());
+  throw InputError((directory / kName).string(), "schema",
+                   std::string(kRunSchema) + ", which this program can read",
+                   schema.is_string() ? schema.get<std::string>() : "none");
+}
+
 }  // namespace
 
 std::string ManifestMismatch::Sentence() const {
@@ -118,6 +131,7 @@ std::optional<ManifestMismatch> VerifyManifest(const fs::path& directory) {
     throw InputError(directory.string(), "", "a finished run", "a folder without manifest.json");
   }
   const std::string text = ReadFile(directory / kName);
+  RequireSchema(text, directory);
   const auto hashes = ParseManifest(text);
   if (!hashes || !hashes->count(kName) || !ProvesItself(text, hashes->at(kName))) {
     return ManifestMismatch{kName, Reason::kChanged};

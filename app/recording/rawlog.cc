@@ -19,7 +19,6 @@
 #include "app/core/json_text.h"
 #include "app/job/facts_json.h"
 #include "app/recording/gzip_file.h"
-#include "app/recording/run_directory.h"
 
 namespace pregrasp {
 namespace {
@@ -128,9 +127,9 @@ const HandFacts* FindHand(const StepFacts& step) {
   return nullptr;
 }
 
-CObservationImage::Ptr NewPicture(const StepFacts& step, int number) {
-  auto picture = NewObservation<CObservationImage>(kPictureLabel, step.t);
-  picture->image.setExternalStorage(PictureName(number, step.id));
+CObservationImage::Ptr NewPicture(double t, const std::string& name) {
+  auto picture = NewObservation<CObservationImage>(kPictureLabel, t);
+  picture->image.setExternalStorage(name);
   return picture;
 }
 
@@ -141,16 +140,39 @@ CObservationComment::Ptr NewComment(double t, const std::string& text) {
   return comment;
 }
 
+std::string BytesOf(const mrpt::serialization::CSerializable& object) {
+  mrpt::io::CMemoryStream bytes;
+  mrpt::serialization::archiveFrom(bytes) << object;
+  return {static_cast<const char*>(bytes.getRawBufferData()), bytes.getTotalBytesCount()};
+}
+
+CSensoryFrame MakeFrame(const StepFacts& step, const std::string& line,
+                        const std::string& picture) {
+  CSensoryFrame frame;
+  for (const BodyFacts& body : step.bodies) {
+    frame.insert(NewPose(kPosePrefix + body.name, body.X_WB(), step.t));
+  }
+  if (!step.fingers.empty()) {
+    frame.insert(NewChannels(kContactsLabel, ContactChannels(step), step.t));
+  }
+  if (const HandFacts* hand = FindHand(step)) {
+    frame.insert(NewPose(kHandPoseLabel, hand->configuration().X_WH, step.t));
+    frame.insert(NewChannels(kJointsLabel, hand->joints, step.t));
+  }
+  if (const auto* grasp = std::get_if<GraspFacts>(&step.details)) {
+    frame.insert(NewChannels(kGraspLabel, GraspChannels(*grasp), step.t));
+  }
+  if (!picture.empty()) frame.insert(NewPicture(step.t, picture));
+  frame.insert(NewComment(step.t, line));
+  return frame;
+}
+
 }  // namespace
 
 struct RawlogWriter::Impl {
   explicit Impl(const std::filesystem::path& path) : file(path) {}
 
-  void Write(const mrpt::serialization::CSerializable& object) {
-    mrpt::io::CMemoryStream bytes;
-    mrpt::serialization::archiveFrom(bytes) << object;
-    file.Write({static_cast<const char*>(bytes.getRawBufferData()), bytes.getTotalBytesCount()});
-  }
+  void Write(const mrpt::serialization::CSerializable& object) { file.Write(BytesOf(object)); }
 
   GzipFile file;
 };
@@ -166,81 +188,55 @@ RawlogWriter::RawlogWriter(const std::filesystem::path& file, const nlohmann::or
 
 RawlogWriter::~RawlogWriter() = default;
 
-void RawlogWriter::Add(const StepFacts& step, int number, const std::string& line) {
-  CSensoryFrame frame;
-  for (const BodyFacts& body : step.bodies) {
-    frame.insert(NewPose(kPosePrefix + body.name, body.X_WB(), step.t));
-  }
-  if (!step.fingers.empty()) {
-    frame.insert(NewChannels(kContactsLabel, ContactChannels(step), step.t));
-  }
-  if (const HandFacts* hand = FindHand(step)) {
-    frame.insert(NewPose(kHandPoseLabel, hand->configuration().X_WH, step.t));
-    frame.insert(NewChannels(kJointsLabel, hand->joints, step.t));
-  }
-  if (const auto* grasp = std::get_if<GraspFacts>(&step.details)) {
-    frame.insert(NewChannels(kGraspLabel, GraspChannels(*grasp), step.t));
-  }
-  frame.insert(NewPicture(step, number));
-  frame.insert(NewComment(step.t, line));
+void RawlogWriter::Add(const StepFacts& step, const std::string& line, const std::string& picture) {
   // rawlog-edit takes a log of frames alone for one single object; pairs work everywhere.
   impl_->Write(mrpt::obs::CActionCollection());
-  impl_->Write(frame);
+  impl_->Write(MakeFrame(step, line, picture));
 }
 
 void RawlogWriter::Close() { impl_->file.Close(); }
 
 namespace {
 
-// Everything in a frame, with what is read from it checked against the step's comment.
-class FrameReader {
- public:
-  FrameReader(const CSensoryFrame& frame, std::string where)
-      : frame_(frame), where_(std::move(where)) {}
+// Whether an observation that was read is one that was written. Poses go through yaw, pitch and
+// roll, which costs their last bits.
+bool AreSame(const mrpt::obs::CObservation& read, const mrpt::obs::CObservation& written) {
+  const auto* pose = dynamic_cast<const CObservationRobotPose*>(&read);
+  const auto* other = dynamic_cast<const CObservationRobotPose*>(&written);
+  if (pose == nullptr || other == nullptr) return BytesOf(read) == BytesOf(written);
+  const RigidTransform X = FromPose(pose->pose.mean), Y = FromPose(other->pose.mean);
+  CObservationRobotPose same_mean = *pose;
+  same_mean.pose.mean = other->pose.mean;
+  return (X.matrix() - Y.matrix()).cwiseAbs().maxCoeff() < kSamePose &&
+         BytesOf(same_mean) == BytesOf(written);
+}
 
-  StepFacts ReadStep() const {
-    const auto comment = frame_.getObservationByClass<CObservationComment>();
-    Require(comment != nullptr, "a comment");
-    StepFacts step = FactsFromJson(ParseJson(comment->text, where_), where_);
-    for (const auto& observation : frame_) {
-      Require(
-          std::abs(mrpt::Clock::toDouble(observation->timestamp) - kRawlogEpoch - step.t) < 1e-6,
-          "the time stamp that the comment gives");
+std::string NameOf(const mrpt::obs::CObservation& observation) {
+  return observation.sensorLabel.empty() ? observation.GetRuntimeClass()->className
+                                         : observation.sensorLabel;
+}
+
+// The step of a frame, whose observations must be those that the step has.
+StepFacts ReadStep(const CSensoryFrame& frame, const std::string& where, std::string& picture) {
+  const auto comment = frame.getObservationByClass<CObservationComment>();
+  if (!comment) throw InputError(where, "", "a comment with the step", "none");
+  StepFacts step = FactsFromJson(ParseJson(comment->text, where), where);
+  const auto image = frame.getObservationByClass<CObservationImage>();
+  if (image && image->image.isExternallyStored()) picture = image->image.getExternalStorageFile();
+  const CSensoryFrame expected = MakeFrame(step, comment->text, picture);
+  auto read = frame.begin();
+  for (const auto& written : expected) {
+    if (read == frame.end() || !AreSame(**read, *written)) {
+      throw InputError(where + ", " + step.id, NameOf(*written), "what the step's comment says",
+                       read == frame.end() ? "nothing" : "something else");
     }
-    for (std::size_t i = 0; i < step.bodies.size(); ++i) {
-      const auto pose = frame_.getObservationByClass<CObservationRobotPose>(i);
-      Require(pose && pose->sensorLabel == kPosePrefix + step.bodies[i].name &&
-                  (FromPose(pose->pose.mean).matrix() - step.bodies[i].X_WB().matrix())
-                          .cwiseAbs()
-                          .maxCoeff() < kSamePose,
-              "the pose of each body of the comment");
-    }
-    if (!step.fingers.empty()) CheckContacts(step);
-    return step;
+    ++read;
   }
-
-  std::string ReadPicture() const {
-    const auto picture = frame_.getObservationByClass<CObservationImage>();
-    Require(picture && picture->image.isExternallyStored(), "a picture stored outside the log");
-    return picture->image.getExternalStorageFile();
+  if (read != frame.end()) {
+    throw InputError(where + ", " + step.id, NameOf(**read), "nothing", "an observation more");
   }
-
- private:
-  void Require(bool condition, const char* expected) const {
-    if (!condition) throw InputError(where_, "", expected, "none");
-  }
-
-  void CheckContacts(const StepFacts& step) const {
-    const auto contacts = frame_.getObservationByClass<CObservationRawDAQ>();
-    Require(contacts && contacts->sensorLabel == kContactsLabel &&
-                contacts->AIN_double == ContactChannels(step) &&
-                contacts->AIN_channel_count == contacts->AIN_double.size(),
-            "the contact channels of each finger of the comment");
-  }
-
-  const CSensoryFrame& frame_;
-  std::string where_;
-};
+  return step;
+}
 
 }  // namespace
 
@@ -256,10 +252,9 @@ Rawlog LoadRawlog(const std::filesystem::path& file) {
       if (const auto comment = std::dynamic_pointer_cast<CObservationComment>(object)) {
         log.header = ParseJson(comment->text, file.string());
       } else if (const auto frame = std::dynamic_pointer_cast<CSensoryFrame>(object)) {
-        const FrameReader reader(*frame,
-                                 file.string() + ": step " + std::to_string(log.steps.size() + 1));
-        log.steps.push_back(reader.ReadStep());
-        log.pictures.push_back(reader.ReadPicture());
+        const std::string where = file.string() + ": step " + std::to_string(log.steps.size() + 1);
+        std::string& picture = log.pictures.emplace_back();
+        log.steps.push_back(ReadStep(*frame, where, picture));
       }
     }
   } catch (const InputError&) {

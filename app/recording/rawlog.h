@@ -14,17 +14,19 @@ namespace pregrasp {
 /// (MRPT takes a time stamp of 0 for none.)
 inline constexpr double kRawlogEpoch = 946684800.0;
 
-/// Writes run.rawlog, an MRPT log that rawlog-edit and RawLogViewer open. What each entry holds is
-/// in app/recording/README.md. The same steps give the same bytes.
+/// Writes run.rawlog or pictures.rawlog, MRPT logs that rawlog-edit and RawLogViewer open. What
+/// each entry holds is in app/recording/README.md. The same steps give the same bytes.
 class RawlogWriter {
  public:
   /// @param header  what the log's global comment says, as JSON. @throws InputError as CheckedFile.
   RawlogWriter(const std::filesystem::path& file, const nlohmann::ordered_json& header);
   ~RawlogWriter();
 
-  /// Appends step `number` (from 1): an empty CActionCollection and a CSensoryFrame.
-  /// @param line  the step's line of steps.jsonl.
-  void Add(const StepFacts& step, int number, const std::string& line);
+  /// Appends a step: an empty CActionCollection and a CSensoryFrame.
+  /// @param line     the step's line of steps.jsonl.
+  /// @param picture  the name of its picture, in the log's folder of images; "" for none. MRPT
+  /// reads the picture whenever it describes the step: it must be there.
+  void Add(const StepFacts& step, const std::string& line, const std::string& picture = "");
   void Close();
 
  private:
@@ -37,11 +39,11 @@ struct Rawlog {                  // NOLINT(bugprone-exception-escape): moving JS
   nlohmann::json header;         ///< the global comment
   std::vector<StepFacts> steps;  ///< from each step's comment
   std::vector<std::string> pictures;  ///< of each step, as MRPT names the file, relative to the
-                                      ///< folder of images
+                                      ///< folder of images; "" for none
 };
 
 /// @throws InputError if the file cannot be read, is damaged, is not what RawlogWriter writes, or
-/// if a step's typed observations and its comment contradict each other.
+/// if a step's observations are not those of its comment, with the step and the observation.
 Rawlog LoadRawlog(const std::filesystem::path& file);
 
 }  // namespace pregrasp

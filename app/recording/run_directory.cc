@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <utility>
 
 #include "app/core/check.h"
@@ -33,18 +34,21 @@ Json RawlogHeader(const Scene& scene, const RunInfo& info) {
           {"seed", info.seed}};
 }
 
-Json ManifestFields(const RunInfo& info, const nlohmann::json& configuration) {
+Json ManifestFields(const RunInfo& info, const std::string& step,
+                    const nlohmann::json& configuration) {
   std::map<std::string, std::string> libraries = BuildLibraries();
   libraries.insert(info.libraries.begin(), info.libraries.end());
   return {{"planner_version", ProgramVersion()},
           {"git_hash", GitHash()},
           {"program_sha256", Sha256OfProgram()},
           {"compiler", Compiler()},
+          {"processor", ProcessorFeatures()},
           {"libraries", libraries},
           {"inputs", info.inputs},
           {"command", info.command},
           {"scene_file", info.scene_file},
           {"seed", info.seed},
+          {"step", step},
           {"settings_at_start", info.settings_at_start},
           {"configuration", configuration}};
 }
@@ -80,6 +84,14 @@ struct RunDirectory::Impl {
   PartialDirectory partial;
   CheckedFile steps, journal, rollout;
   RawlogWriter rawlog;
+  struct Pictures {
+    Pictures(const fs::path& lines_file, const fs::path& log_file, const Json& header)
+        : lines(lines_file), rawlog(log_file, header) {}
+
+    CheckedFile lines;
+    RawlogWriter rawlog;
+  };
+  std::optional<Pictures> pictures;
   int num_steps = 0;
 };
 
@@ -112,11 +124,23 @@ int RunDirectory::AddStep(const StepFacts& step) {
   const int number = ++impl_->num_steps;
   const std::string line = FormatJson(FactsToJson(step, number));
   impl_->steps.Write(line + '\n');
-  impl_->rawlog.Add(step, number, line);
+  impl_->rawlog.Add(step, line);
   Json command = {{"id", step.id}};
   command.update(CommandToJson(step.command));
   impl_->journal.Write(FormatJson(command) + '\n');
   return number;
+}
+
+void RunDirectory::AddPicture(const StepFacts& step, int number, const Json& shot) {
+  if (!impl_->pictures) {
+    impl_->pictures.emplace(partial() / "pictures.jsonl", partial() / "pictures.rawlog",
+                            RawlogHeader(impl_->scene, impl_->info));
+  }
+  const std::string name = PictureName(number, step.id);
+  Json line = {{"picture", "frames/" + name}, {"step", step.id}};
+  line.update(shot);
+  impl_->pictures->lines.Write(FormatJson(line) + '\n');
+  impl_->pictures->rawlog.Add(step, FormatJson(FactsToJson(step, number)), name);
 }
 
 void RunDirectory::AddRolloutRow(const WorldState& state) {
@@ -128,18 +152,22 @@ void RunDirectory::AddRolloutRow(const WorldState& state) {
   impl_->rollout.Write(RolloutRow(state));
 }
 
-void RunDirectory::Finish(RunSummary summary, const nlohmann::json& configuration) {
+void RunDirectory::Finish(RunSummary summary, const std::string& step,
+                          const nlohmann::json& configuration) {
   impl_->steps.Close();
   impl_->journal.Close();
   impl_->rollout.Close();
   impl_->rawlog.Close();
-  // MRPT's tools look for a log's pictures in <name of the log>_Images.
-  std::error_code error;
-  if (fs::exists(partial() / "frames", error)) MakeLink(partial() / "run_Images", "frames");
+  if (impl_->pictures) {
+    impl_->pictures->lines.Close();
+    impl_->pictures->rawlog.Close();
+    // MRPT's tools look for a log's pictures in <name of the log>_Images.
+    MakeLink(partial() / "pictures_Images", "frames");
+  }
   summary.hash = Sha256(ReadFile(partial() / "rollout.csv") + ReadIfThere(partial() / "lift.csv") +
                         ReadIfThere(partial() / "motion.csv"));
   WriteSummary(partial() / "summary.json", summary);
-  WriteManifest(partial(), ManifestFields(impl_->info, configuration));
+  WriteManifest(partial(), ManifestFields(impl_->info, step, configuration));
   impl_->partial.Commit();
 }
 

@@ -60,14 +60,19 @@ class RunDirectory {
   /// its command to journal.jsonl. @returns its number, from 1.
   int AddStep(const StepFacts& step);
 
+  /// Appends a step whose picture is at PictureFile to pictures.jsonl and pictures.rawlog.
+  /// @param shot  what the picture shows, as JSON.
+  void AddPicture(const StepFacts& step, int number, const nlohmann::ordered_json& shot);
+
   /// Appends one row to rollout.csv. `state` is one of a world of this scene.
   void AddRolloutRow(const WorldState& state);
 
   /// Writes summary.json and manifest.json, closes everything and puts the run at DIR. Also for an
   /// interrupted run, with status "interrupted": what was recorded until then is a valid run.
   /// @param summary        its hash is filled in here.
+  /// @param step           the id of the step that the summary and the tables are of.
   /// @param configuration  the resolved configuration, for manifest.json.
-  void Finish(RunSummary summary, const nlohmann::json& configuration);
+  void Finish(RunSummary summary, const std::string& step, const nlohmann::json& configuration);
 
  private:
   struct Impl;

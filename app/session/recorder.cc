@@ -3,7 +3,6 @@
 #include <chrono>
 
 #include "app/core/check.h"
-#include "app/core/json_text.h"
 #include "app/job/planner_settings.h"
 #include "app/job/run_policy.h"
 #include "app/pictures/overlay.h"
@@ -49,10 +48,7 @@ Recorder::Recorder(const std::filesystem::path& directory, const Timeline& timel
 void Recorder::Draw(const Timeline::Node& node, const Shot& shot) {
   const auto begin = std::chrono::steady_clock::now();
   drawer_.Draw(node.facts, timeline_, shot, run_.PictureFile(node.number, node.id()));
-  nlohmann::ordered_json line = {{"picture", "frames/" + PictureName(node.number, node.id())},
-                                 {"step", node.id()}};
-  line.update(ShotToJson(shot));
-  drawn_[node.number] = FormatJson(line) + '\n';
+  drawn_[node.number] = ShotToJson(shot);
   picture_seconds_ +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -107,11 +103,11 @@ void Recorder::WriteTables(const Timeline::Node& node) {
 void Recorder::Finish(const Timeline::Node& node, RunSummary summary) {
   PREGRASP_CHECK(pending_ == nullptr);
   WriteTables(node);
-  std::string pictures;
-  for (const auto& [number, line] : drawn_) pictures += line;
-  if (!pictures.empty()) WriteFile(run_.partial() / "pictures.jsonl", pictures);
+  for (const auto& [number, shot] : drawn_) {
+    run_.AddPicture(timeline_.nodes()[static_cast<std::size_t>(number) - 1]->facts, number, shot);
+  }
   summary.seconds.pictures = picture_seconds_;
-  run_.Finish(std::move(summary), ConfigurationAt(timeline_, node));
+  run_.Finish(std::move(summary), node.id(), ConfigurationAt(timeline_, node));
 }
 
 }  // namespace pregrasp

@@ -39,8 +39,8 @@ class Recorder {
   const Timeline& timeline_;
   PictureMode pictures_;
   PictureDrawer& drawer_;
-  const Timeline::Node* pending_ = nullptr;  // the latest, if its picture is not drawn
-  std::map<int, std::string> drawn_;         // lines of pictures.jsonl, by the step's number
+  const Timeline::Node* pending_ = nullptr;      // the latest, if its picture is not drawn
+  std::map<int, nlohmann::ordered_json> drawn_;  // pictures, by the step's number
   double picture_seconds_ = 0.0;
 };
 

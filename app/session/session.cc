@@ -11,18 +11,6 @@
 namespace pregrasp {
 namespace {
 
-// Of what a result depends on beside the scene and the program, as far as it is there.
-std::map<std::string, std::string> HashInputs(const std::filesystem::path& weights) {
-  std::map<std::string, std::string> hashes;
-  for (const std::filesystem::path& file :
-       {weights / "score.safetensors", weights / "generator.safetensors",
-        DataFolder() / "assets" / "hand" / "shadow_right.urdf"}) {
-    std::error_code none;
-    if (std::filesystem::exists(file, none)) hashes[file.filename().string()] = Sha256OfFile(file);
-  }
-  return hashes;
-}
-
 double PeakMegabytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -46,6 +34,17 @@ RunSummary::Seconds SumSeconds(const Timeline& timeline) {
 std::string SceneLabel(const Scene& scene) { return scene.file.empty() ? scene.name : scene.file; }
 
 }  // namespace
+
+std::map<std::string, std::string> HashInputs(const std::filesystem::path& weights) {
+  std::map<std::string, std::string> hashes;
+  for (const std::filesystem::path& file :
+       {weights / "score.safetensors", weights / "generator.safetensors",
+        DataFolder() / "assets" / "hand" / "shadow_right.urdf"}) {
+    std::error_code none;
+    if (std::filesystem::exists(file, none)) hashes[file.filename().string()] = Sha256OfFile(file);
+  }
+  return hashes;
+}
 
 Session::Session(Scene scene, const SessionConfig& config) : config_(config) {
   job_ = std::make_unique<Job>(

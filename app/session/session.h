@@ -23,6 +23,10 @@ struct SessionConfig {
   std::filesystem::path weights;  ///< the folder of the networks' weights
 };
 
+/// SHA-256 of the files that a result depends on beside the scene and the program, by name, as far
+/// as they are there: the weights in that folder, the hand.
+std::map<std::string, std::string> HashInputs(const std::filesystem::path& weights);
+
 /// One scene under work: its job and timeline, where its simulations and plans begin, and its run
 /// directory. Computes nothing itself: whatever is done is a command to the timeline.
 class Session {

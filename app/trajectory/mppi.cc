@@ -56,9 +56,9 @@ MppiState Mppi::Start() const {
   return state;
 }
 
-PlanOutcome Mppi::Simulate(const std::vector<double>& action) const {
+PlanOutcome Mppi::Simulate(const std::vector<double>& action, std::vector<TraceRow>* trace) const {
   return SimulatePlan(*problem_.world, *problem_.environment, problem_.start, space_.Decode(action),
-                      config_.timing);
+                      config_.timing, trace);
 }
 
 std::vector<std::vector<double>> Mppi::SampleActions(const MppiState& state) const {

@@ -117,8 +117,9 @@ class Mppi {
   /// plans, its own iterations counted from 1.
   void Screen(MppiState& state, int iterations, ThreadPool& pool) const;
 
-  /// Decodes and simulates one action again, e.g. the winner.
-  PlanOutcome Simulate(const std::vector<double>& action) const;
+  /// Decodes and simulates one action again, e.g. the winner. @param trace  as SimulatePlan's.
+  PlanOutcome Simulate(const std::vector<double>& action,
+                       std::vector<TraceRow>* trace = nullptr) const;
 
   RelativePlan Decode(const std::vector<double>& action) const { return space_.Decode(action); }
   /// Standard deviation of the noise in `iteration`, from 0: falls geometrically from the first to

@@ -42,7 +42,7 @@ class PlanRunner {
         state_(start),
         start_(start),
         finite_(start) {
-    if (trace_) trace_->push_back({state_, {}});
+    if (trace_) trace_->push_back({state_, FindContacts()});
     PREGRASP_CHECK(timing.knots >= 1, timing.knots);
     steps_per_knot_ = StepsIn(timing.stage_seconds / timing.knots);
     steps_in_hold_ = StepsIn(timing.hold_seconds);
@@ -143,6 +143,18 @@ class PlanRunner {
 
   Vector3 CalcContactPlace(int finger) const {
     return state_.bodies.front().X_WB() * state_.fingers[finger].p_OC;
+  }
+
+  // What the bodies touch where they stand: the contacts of a step that changes nothing here.
+  std::vector<ContactPoint> FindContacts() const {
+    WorldState state = state_;
+    std::vector<ContactPoint> contacts;
+    if (stepper_ == Stepper::kKernel) {
+      world_.Step(state, &contacts);
+    } else {
+      world_.StepWithSimbody(state, &contacts);
+    }
+    return contacts;
   }
 
   // How long the hand needs to bring the fingers of a stage to new contacts: none at the plan's
@@ -256,8 +268,8 @@ class PlanRunner {
 
 PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
                          const WorldState& start, const RelativePlan& plan,
-                         const PlanTiming& timing) {
-  PlanRunner runner(world, environment, start, timing, Stepper::kKernel, nullptr);
+                         const PlanTiming& timing, std::vector<TraceRow>* trace) {
+  PlanRunner runner(world, environment, start, timing, Stepper::kKernel, trace);
   for (const auto& stage : plan.stages) {
     runner.StartStage(stage, true);
     for (int k = 0; k < timing.knots && !runner.diverged(); ++k) {

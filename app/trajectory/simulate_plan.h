@@ -54,12 +54,13 @@ Released SimulateRelease(const World& world, WorldState state);
 /// Simulates a relative plan from `start` through its stages and the hold. A finger whose tip does
 /// not fit where it is to be put stays away, in the stages that keep it too: the outcome's plan
 /// says so.
+/// @param trace  filled with one row a step if given, the start first, with what touches there.
 PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
                          const WorldState& start, const RelativePlan& plan,
-                         const PlanTiming& timing);
+                         const PlanTiming& timing, std::vector<TraceRow>* trace = nullptr);
 
 /// Simulates a plan whose targets are given in the world, by either stepper.
-/// @param trace  filled with one row a step if given, the start first.
+/// @param trace  as above.
 PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
                          const WorldState& start, const WorldPlan& plan, const PlanTiming& timing,
                          Stepper stepper, std::vector<TraceRow>* trace = nullptr);

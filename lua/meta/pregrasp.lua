@@ -27,6 +27,22 @@ function pregrasp.open(scene, options) end
 ---@field threads? integer cannot change a result; 0 is one per processor, at most 256
 ---@field set? table<string, number|string|Vector3> changes values: { ["object.mass"] = 0.2 }
 
+---A finished run, read back. What its files say is given as it is there; whether it is true is for `pregrasp verify` to say.
+---@param dir string a run directory
+---@return Run
+function pregrasp.load(dir) end
+
+---@class Run
+---@field ids string[] of its steps, in the order of doing
+---@field summary table summary.json: its fields by name, null as nil
+---@field manifest table manifest.json
+local Run = {}
+
+---A step as steps.jsonl has it: fields by the names in app/recording/README.md, lists from 1, null as nil.
+---@param id string "path.1.mppi.3"
+---@return table
+function Run:step(id) end
+
 -- Scenes. In a scene file these functions are globals. ---------------------------------------------
 
 ---A scene. A scene file ends with `return scene { .. }`.

@@ -309,16 +309,22 @@ TEST_F(PlannerScriptTest, AFinishedMotionIsTheRuns) {
     for _ in m:frames() do end
     s:save())"));
   const LoadedRun run = LoadRun(folder_.path() / "out/cube");
-  int failed = 0, lifting = 0;
+  int failed = 0, resting = 0, lifting = 0;
   double simulated_t = 0.0;
   for (const StepFacts& step : run.steps) {
+    if (const auto* grasp = std::get_if<GraspFacts>(&step.details)) {
+      const bool collides = grasp->status == "collision" || grasp->status == "not_certified";
+      EXPECT_TRUE(grasp->colliding.empty() || (collides && grasp->colliding.size() == 2))
+          << step.id;
+    }
     const auto* frame = std::get_if<FrameFacts>(&step.details);
     if (frame == nullptr || step.command.verb != Verb::kFrame) continue;
     failed += frame->failed ? 1 : 0;
     EXPECT_GE(frame->simulated_t, simulated_t);  // while it stands still, only the hand moves
     simulated_t = frame->simulated_t;
-    if (frame->phase == "contact") {
-      EXPECT_FALSE(step.contacts.empty());  // with what it lies on
+    if (frame->phase == "approach" || frame->phase == "contact") {
+      ++resting;
+      EXPECT_FALSE(step.contacts.empty()) << step.id;  // with what it lies on
     }
     if (frame->phase != "lift") continue;
     ++lifting;
@@ -329,6 +335,7 @@ TEST_F(PlannerScriptTest, AFinishedMotionIsTheRuns) {
     }
     EXPECT_GT(upward, 0.0) << step.id;
   }
+  EXPECT_GT(resting, 0);
   EXPECT_GT(lifting, 0);
   EXPECT_GT(simulated_t, 1.0);
   EXPECT_EQ(run.summary.motion.failed, failed);

@@ -130,6 +130,37 @@ TEST(ScriptTest, CtrlCEndsALoopOfLuaThatCatchesEverything) {
   EXPECT_EQ(result.err, "interrupted\n");
 }
 
+TEST(ScriptTest, AFinishedRunIsReadBackStepByStep) {
+  const TestFolder folder;
+  folder.Write("read.lua", R"(local pg = require "pregrasp"
+    local s = pg.open("scenes/ruler.lua", { seed = 7 })
+    s:record { dir = "out/run", pictures = "none" }
+    local sim = s:simulate()
+    sim:touch { finger = "index", p_OC = { 0.11, 0, 0.0015 } }
+    sim:wait { seconds = 0.1 }
+    s:save()
+    local run = pg.load "out/run"
+    print(run, table.concat(run.ids, " "), run.summary.seed, run.manifest.schema)
+    local step = run:step "sim.2"
+    print(step.number, step.command.verb, step.fingers[2].finger, step.fingers[2].on)
+    print(step.bodies[1].p_WB[1] == s:body("ruler").p[1], #step.contacts > 0, run.summary.status)
+    print(pcall(run.step, run, "sim.3"))
+    print(pcall(function() return run.steps end))
+    print(pcall(pg.load, "out"))
+    print(pcall(pg.load, "/etc")))");
+  const ProgramResult result = RunProgram({"script", "read.lua"}, folder.path());
+  EXPECT_EQ(result.code, 0) << result.err;
+  const std::string start =
+      "Run(out/run, 3 steps)\tscene.start sim.1 sim.2\t7\tpregrasp.run/1\n"
+      "3\twait\tindex\ttrue\n"
+      "true\ttrue\tnil\n";
+  EXPECT_EQ(result.out.substr(0, start.size()), start);
+  for (const char* part : {"id: expected \"sim.1\", got \"sim.3\"", "unknown key \"steps\"",
+                           "out/manifest.json", "/etc/manifest.json"}) {
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << '\n' << result.out;
+  }
+}
+
 TEST(InfoTest, NamesTheProgramItsLibrariesAndTheRenderer) {
   const TestFolder folder;
   const ProgramResult result = RunProgram({"info"}, folder.path());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "app/core/error.h"
@@ -74,6 +75,28 @@ TEST_F(TimelineTest, AnotherCommandGetsTheNextFreeBranchWhichWhatFollowsCarriesO
   EXPECT_EQ(timeline.Do(second, Verb::kCertify).id(), "path.1.certify");
   const Node& third = timeline.Do(first, Verb::kIterate, {{"settings", {{"mppi.sigma", 0.5}}}});
   EXPECT_EQ(third.id(), "path.1.mppi.2~3");
+}
+
+TEST_F(TimelineTest, ScreeningAndIterationsShowTheWorldWhereTheBestPlanSoFarEnds) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  const Node* node = &MakePath(timeline);
+  const Node& screened = timeline.Do(*node, Verb::kScreen);
+  EXPECT_GT(screened.facts.t, 1.0);
+  EXPECT_FALSE(screened.facts.contacts.empty());
+  double best_cost = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const Vector3 p_WO_before = node->facts.object().p_WB;
+    node = &timeline.Do(*node, Verb::kIterate);
+    EXPECT_GT(node->facts.t, 1.0);
+    const auto& facts = std::get<IterationFacts>(node->facts.details);
+    const auto best =
+        std::min_element(facts.rollouts.begin(), facts.rollouts.end(),
+                         [](const auto& a, const auto& b) { return a.cost.total < b.cost.total; });
+    const bool is_better = i == 0 || best->cost.total < best_cost;
+    best_cost = facts.best_cost;
+    EXPECT_EQ(node->facts.object().p_WB, is_better ? best->p_WO_end : p_WO_before) << i;
+  }
 }
 
 TEST_F(TimelineTest, IdsAreUniqueWhateverIsDoneAndUndone) {

@@ -5,6 +5,7 @@
 #include "app/core/error.h"
 #include "app/core/json_text.h"
 #include "app/core/sha256.h"
+#include "app/recording/build_info.h"
 #include "tests/recording/sample_run.h"
 
 namespace pregrasp {
@@ -15,7 +16,7 @@ using Reason = ManifestMismatch::Reason;
 
 class ManifestTest : public testing::Test {
  protected:
-  ManifestTest() { WriteSampleRun(run_, 4, true); }
+  ManifestTest() { WriteSampleRun(run_, 4, 4); }
 
   // What VerifyManifest says, as "" or a sentence.
   std::string Verdict() const {
@@ -39,12 +40,14 @@ TEST_F(ManifestTest, EveryFileIsListedWithItsHash) {
   EXPECT_TRUE(manifest.contains("git_hash"));
   EXPECT_EQ(manifest["program_sha256"], Sha256OfFile("/proc/self/exe"));
   EXPECT_TRUE(manifest.contains("compiler"));
+  EXPECT_EQ(manifest["processor"], ProcessorFeatures());
+  EXPECT_EQ(manifest["step"], "sim.0");
   EXPECT_EQ(manifest["inputs"]["score.safetensors"], std::string(64, 'a'));
   const std::vector<std::string> files = ListRunFiles(run_).files;
-  EXPECT_EQ(files.size(), 16U);
+  EXPECT_EQ(files.size(), 18U);
   EXPECT_EQ(manifest["files"].size(), files.size());
   for (const std::string& file : files) {
-    if (file == "manifest.json" || file == "run_Images") continue;
+    if (file == "manifest.json" || file == "pictures_Images") continue;
     EXPECT_EQ(manifest["files"][file], Sha256OfFile(run_ / file)) << file;
   }
 }
@@ -106,9 +109,9 @@ TEST_F(ManifestTest, AnExtraFileIsNamed) {
 }
 
 TEST_F(ManifestTest, ALinkThatLeadsElsewhereIsFound) {
-  fs::remove(run_ / "run_Images");
-  fs::create_symlink("meshes", run_ / "run_Images");
-  EXPECT_EQ(Verdict(), "run_Images was changed");
+  fs::remove(run_ / "pictures_Images");
+  fs::create_symlink("meshes", run_ / "pictures_Images");
+  EXPECT_EQ(Verdict(), "pictures_Images was changed");
 }
 
 TEST_F(ManifestTest, AFileThatBecameALinkToItsOwnContentIsFound) {
@@ -122,6 +125,25 @@ TEST_F(ManifestTest, AFolderWithoutAManifestIsNoRun) {
   EXPECT_FALSE(IsFinishedRun(folder_.path() / "nowhere"));
   EXPECT_THROW(VerifyManifest(folder_.path()), InputError);
   EXPECT_THROW(VerifyManifest(folder_.path() / "nowhere"), InputError);
+}
+
+TEST_F(ManifestTest, AWholeManifestOfAnotherSchemaIsRefusedAsThat) {
+  std::string text = ReadFile(run_ / "manifest.json");
+  const std::string own = ParseJson(text, "")["files"]["manifest.json"];
+  const std::size_t at = text.find(own);
+  text.replace(text.find("pregrasp.run/1"), 14, "pregrasp.run/2");
+  WriteFile(run_ / "manifest.json", text);
+  EXPECT_EQ(Verdict(), "manifest.json was changed");
+  text.erase(at, own.size());
+  text.insert(at, Sha256(text));
+  WriteFile(run_ / "manifest.json", text);
+  try {
+    VerifyManifest(run_);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("schema: expected pregrasp.run/1"), std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(ManifestTest, AnotherProgramsManifestIsNoRuns) {

@@ -122,7 +122,7 @@ TEST(PartialDirectoryTest, ManyProcessesAtOnceLeaveOneWholeRun) {
     if (children.back() != 0) continue;
     for (int i = 0; i < 20; ++i) {
       try {
-        WriteSampleRun(run, 2, true, seed);
+        WriteSampleRun(run, 2, 2, seed);
       } catch (const InputError& error) {
         if (!Contains(error.what(), "no other run is writing")) _exit(1);
       }
@@ -175,7 +175,7 @@ TEST(PartialDirectoryTest, WhatAppearsAtTheTargetDuringTheRunIsNotReplacedEither
     RunDirectory run(directory, SampleScene());
     fs::create_directory(directory);
     WriteFile(directory / "thesis.tex", "years of work");
-    EXPECT_THROW(run.Finish({}, {}), InputError);
+    EXPECT_THROW(run.Finish({}, "", {}), InputError);
   }
   EXPECT_EQ(ReadFile(directory / "thesis.tex"), "years of work");
   EXPECT_EQ(Names(folder.path()), StringList{"run"});
@@ -225,9 +225,9 @@ TEST(PartialDirectoryTest, AFolderCutShortInItsRemovalIsClearedAway) {
 TEST(PartialDirectoryTest, ARunMovedAsideIsPutBackIfNoNewOneCame) {
   const TemporaryFolder folder;
   const fs::path run = folder.path() / "run";
-  WriteSampleRun(run, 3, true, 1);
+  WriteSampleRun(run, 3, 3, 1);
   fs::rename(run, folder.path() / "run.replaced");
-  WriteSampleRun(folder.path() / "new", 3, true, 2);
+  WriteSampleRun(folder.path() / "new", 3, 3, 2);
   fs::rename(folder.path() / "new", folder.path() / "run.partial");
   EXPECT_EQ(ErrorAt(run), "");
   EXPECT_EQ(Names(folder.path()), StringList{"run"});
@@ -237,8 +237,8 @@ TEST(PartialDirectoryTest, ARunMovedAsideIsPutBackIfNoNewOneCame) {
 
 TEST(PartialDirectoryTest, ARunMovedAsideIsRemovedIfANewOneCame) {
   const TemporaryFolder folder;
-  WriteSampleRun(folder.path() / "run.replaced", 3, true, 1);
-  WriteSampleRun(folder.path() / "run", 3, true, 2);
+  WriteSampleRun(folder.path() / "run.replaced", 3, 3, 1);
+  WriteSampleRun(folder.path() / "run", 3, 3, 2);
   EXPECT_EQ(ErrorAt(folder.path() / "run"), "");
   EXPECT_EQ(Names(folder.path()), StringList{"run"});
   EXPECT_EQ(LoadRun(folder.path() / "run").manifest["seed"], 2);
@@ -247,8 +247,8 @@ TEST(PartialDirectoryTest, ARunMovedAsideIsRemovedIfANewOneCame) {
 TEST(PartialDirectoryTest, FoldersAreSwappedWithAndWithoutExchange) {
   for (const bool may_exchange : {true, false}) {
     const TemporaryFolder folder;
-    WriteSampleRun(folder.path() / "run", 1, false, 1);
-    WriteSampleRun(folder.path() / "fresh", 1, false, 2);
+    WriteSampleRun(folder.path() / "run", 1, 0, 1);
+    WriteSampleRun(folder.path() / "fresh", 1, 0, 2);
     SwapInto(folder.path() / "fresh", folder.path() / "run", may_exchange);
     EXPECT_EQ(LoadRun(folder.path() / "run").manifest["seed"], 2);
     const char* old = may_exchange ? "fresh" : "run.replaced";
@@ -270,7 +270,7 @@ TEST(PartialDirectoryTest, KilledAtAnyMomentItLeavesTheOldOrTheNewRun) {
     const pid_t child = fork();
     if (child == 0) {
       for (std::uint64_t seed = 1000U * static_cast<std::uint64_t>(round);; ++seed) {
-        WriteSampleRun(run, 3, true, seed + 1);
+        WriteSampleRun(run, 3, 3, seed + 1);
       }
     }
     std::this_thread::sleep_for(rng.Uniform() * wait);
@@ -357,7 +357,7 @@ TEST(RunDirectoryTest, WhereverTheDiskIsFullNothingIsLeftBehind) {
       const rlimit file_size{limit, limit};
       setrlimit(RLIMIT_FSIZE, &file_size);
       try {
-        WriteSampleRun(run, 60, true, limit + 1);
+        WriteSampleRun(run, 60, 60, limit + 1);
       } catch (const InputError& error) {
         const std::string message = error.what();
         return Contains(message, "File too large") && !Contains(message, "\n") ? 2 : 1;

@@ -38,7 +38,7 @@ TEST(RunDirectoryTest, APictureIsNamedByNumberAndId) {
 
 TEST(RunDirectoryTest, AFinishedRunHoldsTheFilesOfTheDesignAndNothingIsLeftBesideIt) {
   const TemporaryFolder folder;
-  WriteSampleRun(folder.path() / "run", 2, true);
+  WriteSampleRun(folder.path() / "run", 2, 2);
   const std::vector<std::string> expected = {"frames/0001_sim-0.png",
                                              "frames/0002_sim-1.png",
                                              "journal.jsonl",
@@ -47,33 +47,35 @@ TEST(RunDirectoryTest, AFinishedRunHoldsTheFilesOfTheDesignAndNothingIsLeftBesid
                                              "meshes/scan.obj",
                                              "meshes/scan.points.obj",
                                              "meshes/tool.2.2.obj",
+                                             "pictures.jsonl",
+                                             "pictures.rawlog",
+                                             "pictures_Images",
                                              "rollout.csv",
                                              "run.rawlog",
-                                             "run_Images",
                                              "scene.json",
                                              "steps.jsonl",
                                              "summary.json"};
   EXPECT_EQ(ListRunFiles(folder.path() / "run").files, expected);
-  EXPECT_EQ(fs::read_symlink(folder.path() / "run/run_Images"), "frames");
+  EXPECT_EQ(fs::read_symlink(folder.path() / "run/pictures_Images"), "frames");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST(RunDirectoryTest, TheSameRunTwiceHasTheSameBytes) {
   const TemporaryFolder folder;
-  WriteSampleRun(folder.path() / "a", 20, true);
-  WriteSampleRun(folder.path() / "b", 20, true);
+  WriteSampleRun(folder.path() / "a", 20, 20);
+  WriteSampleRun(folder.path() / "b", 20, 20);
   const std::vector<std::string> files = ListRunFiles(folder.path() / "a").files;
   ASSERT_EQ(ListRunFiles(folder.path() / "b").files, files);
   for (const std::string& file : files) {
-    if (file == "run_Images") continue;
+    if (file == "pictures_Images") continue;
     EXPECT_EQ(ReadFile(folder.path() / "a" / file), ReadFile(folder.path() / "b" / file)) << file;
   }
 }
 
 TEST(RunDirectoryTest, PicturesChangeNoOtherFileButTheManifest) {
   const TemporaryFolder folder;
-  WriteSampleRun(folder.path() / "with", 20, true);
-  WriteSampleRun(folder.path() / "without", 20, false);
+  WriteSampleRun(folder.path() / "with", 20, 20);
+  WriteSampleRun(folder.path() / "without", 20, 0);
   for (const std::string& file : ListRunFiles(folder.path() / "without").files) {
     if (file == "manifest.json") continue;
     EXPECT_EQ(ReadFile(folder.path() / "with" / file), ReadFile(folder.path() / "without" / file))
@@ -87,7 +89,7 @@ TEST(RunDirectoryTest, TheHeaderOfTheRolloutIsTheContracts) {
     Scene scene = SampleScene();
     scene.bodies.resize(3);
     RunDirectory run(folder.path() / "run", scene);
-    run.Finish(RunSummary{}, {});
+    run.Finish(RunSummary{}, "", {});
   }
   EXPECT_EQ(ReadFile(folder.path() / "run/rollout.csv"),
             "t,p_WO_x,p_WO_y,p_WO_z,q_WO_w,q_WO_x,q_WO_y,q_WO_z,w_WO_x,w_WO_y,w_WO_z,"
@@ -158,7 +160,7 @@ void CollectKeys(const nlohmann::json& value, const std::string& prefix,
 TEST(RunDirectoryTest, TheSummaryHasTheFieldsOfTheContractAndNoOthers) {
   const TemporaryFolder folder;
   RunDirectory run(folder.path() / "run", SmallScene());
-  run.Finish(RunSummary{}, {});
+  run.Finish(RunSummary{}, "", {});
   std::set<std::string> keys;
   CollectKeys(SummaryOf(folder.path() / "run"), "", keys);
   const std::set<std::string> expected = {"scene",
@@ -256,7 +258,7 @@ TEST(RunDirectoryTest, TheSummaryReadsBackAndIsNullWhereNothingIsKnown) {
   summary.contacts = {{{Finger::kThumb}, {3}}};
   summary.object_motion.translation_m = 0.1;
   RunDirectory run(folder.path() / "run", SmallScene());
-  run.Finish(summary, {});
+  run.Finish(summary, "", {});
   const nlohmann::json json = SummaryOf(folder.path() / "run");
   EXPECT_EQ(json["contacts"][0]["fingers"][0], "thumb");
   EXPECT_TRUE(json["wrench"]["margin"].is_null());
@@ -281,7 +283,7 @@ TEST(RunDirectoryTest, TheHashOfTheSummaryIsThatOfRolloutThenLiftThenMotion) {
       WriteFile(run.partial() / "motion.csv", "t\n0\n");
       WriteFile(run.partial() / "lift.csv", "t\n1\n");
     }
-    run.Finish(RunSummary{}, {});
+    run.Finish(RunSummary{}, "", {});
   }
   const std::string rollout = ReadFile(with / "rollout.csv");
   EXPECT_EQ(SummaryOf(without)["hash"], Sha256(rollout));
@@ -328,8 +330,8 @@ TEST(RunDirectoryTest, AnUnfinishedRunLeavesTheOldOneAsItWas) {
 
 TEST(RunDirectoryTest, ANewRunReplacesTheOldOneAltogether) {
   const TemporaryFolder folder;
-  WriteSampleRun(folder.path() / "run", 5, true, 1);
-  WriteSampleRun(folder.path() / "run", 3, false, 2);
+  WriteSampleRun(folder.path() / "run", 5, 5, 1);
+  WriteSampleRun(folder.path() / "run", 3, 0, 2);
   EXPECT_FALSE(VerifyManifest(folder.path() / "run"));
   EXPECT_FALSE(fs::exists(folder.path() / "run/frames"));
   EXPECT_EQ(LoadRun(folder.path() / "run").manifest["seed"], 2);

@@ -133,9 +133,9 @@ inline const std::string kOnePixelPng(
     "\0\0\0\nIDATx\x9c\x63\xf8\x0f\0\1\1\1\0\xb1\x38\xf6\x14\0\0\0\0IEND\xae\x42\x60\x82",
     67);
 
-/// Writes a whole run of SampleScene with `steps` steps and, if asked, their pictures.
-inline void WriteSampleRun(const std::filesystem::path& directory, int steps = 5,
-                           bool pictures = false, std::uint64_t seed = 1) {
+/// Writes a whole run of SampleScene with `steps` steps and the pictures of the first `pictures`.
+inline void WriteSampleRun(const std::filesystem::path& directory, int steps = 5, int pictures = 0,
+                           std::uint64_t seed = 1) {
   RunInfo info;
   info.seed = seed;
   info.libraries = {{"simbody", "3.7"}};
@@ -144,14 +144,17 @@ inline void WriteSampleRun(const std::filesystem::path& directory, int steps = 5
   for (int i = 0; i < steps; ++i) {
     const StepFacts step = SampleStep(i, seed);
     const int number = run.AddStep(step);
-    if (pictures) WriteFile(run.PictureFile(number, step.id), kOnePixelPng);
+    if (i < pictures) {
+      WriteFile(run.PictureFile(number, step.id), kOnePixelPng);
+      run.AddPicture(step, number, {{"title", ""}});
+    }
     run.AddRolloutRow(SampleState(i, seed));
   }
   RunSummary summary;
   summary.scene = "sample";
   summary.seed = seed;
   summary.status = "interrupted";
-  run.Finish(summary, {{"mppi", {{"samples", 128}}}});
+  run.Finish(summary, "sim.0", {{"mppi", {{"samples", 128}}}});
 }
 
 }  // namespace pregrasp

@@ -120,5 +120,41 @@ TEST_F(SimulatePlanTest, ATipThatTouchesIsAsFastAsItsContactAndOneInTheAirDoesNo
   EXPECT_LT(air.max_tip_speed, 0.1);
 }
 
+TEST_F(SimulatePlanTest, TheFirstRowHasWhatCarriesTheRestingRuler) {
+  const WorldPlan drag = MakeRulerDrag(0.02, 0.08);
+  for (const Stepper stepper : {Stepper::kKernel, Stepper::kSimbody}) {
+    Simulate(drag, stepper);
+    const TraceRow& start = trace_.front();
+    EXPECT_EQ(start.state.t, 0.0);
+    EXPECT_EQ(start.state.bodies[0].p_WB, ruler_.world.InitialState().bodies[0].p_WB);
+    Vector3 f_W = Vector3::Zero();  // on the ruler, which is the first of each pair
+    for (const ContactPoint& contact : start.contacts) f_W -= contact.f_W;
+    const double weight = 0.025 * 9.81;
+    EXPECT_NEAR(f_W.z(), weight, 1e-6 * weight);
+    EXPECT_LT(f_W.head<2>().norm(), 1e-6 * weight);
+  }
+}
+
+TEST_F(SimulatePlanTest, ATraceChangesNothingOfARelativePlan) {
+  RelativePlan plan;
+  plan.stages.resize(1);
+  plan.stages[0][kIndex].on = true;
+  plan.stages[0][kIndex].contact.p_OC = Vector3(0.05, 0.0, 0.0015);
+  plan.stages[0][kIndex].knots.resize(timing_.knots);
+  for (auto& knot : plan.stages[0][kIndex].knots) {
+    knot.depth = 0.01;
+    knot.travel_W = Vector3(0.01, 0.0, 0.0);
+  }
+  const WorldState start = ruler_.world.InitialState();
+  const PlanOutcome alone = SimulatePlan(ruler_.world, ruler_.environment, start, plan, timing_);
+  const PlanOutcome traced =
+      SimulatePlan(ruler_.world, ruler_.environment, start, plan, timing_, &trace_);
+  EXPECT_GT((alone.end.bodies[0].p_WB - start.bodies[0].p_WB).norm(), 0.01);
+  EXPECT_EQ(alone.end.bodies[0].p_WB, traced.end.bodies[0].p_WB);
+  EXPECT_EQ(alone.end.bodies[0].q_WB.coeffs(), traced.end.bodies[0].q_WB.coeffs());
+  EXPECT_EQ(trace_.back().state.bodies[0].p_WB, traced.end.bodies[0].p_WB);
+  EXPECT_FALSE(trace_.back().contacts.empty());
+}
+
 }  // namespace
 }  // namespace pregrasp

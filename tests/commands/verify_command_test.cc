@@ -1,0 +1,268 @@
+// pregrasp verify and diff as a user types them: on a run that succeeds, on one that fails, and on
+// one that was stepped, gone back on and forked from Lua.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+
+#include "app/core/data_folder.h"
+#include "app/session/verification.h"
+#include "tests/bindings/run_program.h"
+#include "tests/networks/random_network.h"
+#include "tests/recording/alteration.h"
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kRuler = PREGRASP_SOURCE_DIR "/scenes/ruler.lua";
+
+constexpr char kForks[] = R"lua(
+  local pg = require "pregrasp"
+  local s = pg.open("SCENE", { set = { ["grasps.samples"] = 2, ["grasps.starts"] = 2,
+                                       ["grasps.max_solves"] = 1 } })
+  s:record { dir = "out/forks", pictures = "none" }
+  local g = s:graph { triangles = 12, samples = 1, points = 128 }
+  g:score()
+  for _ = 1, 3 do g:prune_step() end
+  local o = g:paths { stages = 2 }:next():optimize { samples = 6, iterations = 4, patience = 9 }
+  for _ = 1, 3 do o:step() end
+  o:back(2)
+  local other = o:fork { sigma = 0.3 }
+  other:step()
+  while o:step() do end
+  other:certify()
+  o:certify():grasps { samples = 2 }
+  s:save())lua";
+
+class VerifyCommandTest : public testing::Test {
+ protected:
+  VerifyCommandTest() {
+    setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);  // for the program's verdicts
+    fs::create_directories(weights_);
+    WriteRandomWeights(weights_);
+  }
+
+  // A run with random weights of little work, which comes to nothing.
+  fs::path MakeFailingRun(const std::string& name = "failing",
+                          const std::vector<std::string>& more = {},
+                          const std::string& pictures = "none") const {
+    std::vector<std::string> arguments = {"run",        kRuler,
+                                          "--weights",  weights_.string(),
+                                          "--out",      name,
+                                          "--paths",    "1",
+                                          "--set",      "mppi.iterations=2",
+                                          "--set",      "grasps.samples=2",
+                                          "--set",      "grasps.search_sets=4096",
+                                          "--set",      "grasps.starts=2",
+                                          "--set",      "screen.paths=4",
+                                          "--set",      "fingertips.friction=0.1",
+                                          "--threads",  "1",
+                                          "--pictures", pictures};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = RunProgram(arguments, folder_);
+    EXPECT_EQ(result.code, 3) << result.err;
+    return folder_ / name;
+  }
+
+  fs::path MakeForkedRun() const {
+    std::string script = kForks;
+    WriteFile(folder_ / "forks.lua", script.replace(script.find("SCENE"), 5, kRuler));
+    const ProgramResult result =
+        RunProgram({"script", "forks.lua", "--weights", weights_.string()}, folder_);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return folder_ / "out/forks";
+  }
+
+  ProgramResult Verify(const fs::path& run, const std::string& threads = "2") const {
+    return RunProgram(
+        {"verify", run.string(), "--threads", threads, "--weights", weights_.string()}, folder_);
+  }
+
+  // The program verifies it; what an altered and sealed copy of its files is found to differ in is
+  // found by the same comparison with what was recomputed once.
+  void ExpectProven(const fs::path& run, const fs::path& weights) const {
+    const fs::path recomputed = folder_ / "recomputed", altered = folder_ / "altered";
+    RunComparison same(0.0);
+    RecomputeRun(run, recomputed, {1, weights, {}}, same);
+    same.CompareRuns(run, recomputed);
+    EXPECT_FALSE(same.first().has_value()) << same.first()->Sentence("run", "recomputed");
+    fs::copy(run, altered, fs::copy_options::recursive);
+    Rng rng(17);
+    for (int i = 0; i < 20; ++i) {
+      const Alteration alteration = AlterRandomField(altered / "steps.jsonl", rng);
+      const RunDifference found = Compare(altered, recomputed);
+      EXPECT_EQ(found.place, alteration.id);
+      EXPECT_EQ(found.value.field, alteration.field) << alteration.id;
+      Restore(run, altered, "steps.jsonl");
+    }
+    for (const char* table : {"rollout.csv", "lift.csv", "motion.csv"}) {
+      for (int i = 0; fs::exists(run / table) && i < 20; ++i) {
+        const std::string cell = AlterRandomCell(altered / table, rng);
+        const RunDifference found = Compare(altered, recomputed);
+        EXPECT_EQ(found.place + ": " + found.value.field, std::string(table) + ", " + cell);
+        Restore(run, altered, table);
+      }
+    }
+    fs::remove_all(recomputed);
+    fs::remove_all(altered);
+  }
+
+  static RunDifference Compare(const fs::path& run, const fs::path& recomputed) {
+    RunComparison comparison(0.0);
+    comparison.CompareRuns(run, recomputed);
+    return comparison.first().value_or(RunDifference{"no difference", {}});
+  }
+  static void Restore(const fs::path& from, const fs::path& to, const std::string& file) {
+    fs::copy_file(from / file, to / file, fs::copy_options::overwrite_existing);
+  }
+
+  const TestFolder temporary_;
+  const fs::path folder_ = temporary_.path();
+  const fs::path weights_ = folder_ / "weights";
+};
+
+TEST_F(VerifyCommandTest, ARunThatFailsIsProvenStepByStep) {
+  const fs::path run = MakeFailingRun();
+  const ProgramResult result = Verify(run);
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find(" steps recomputed, every file the same"), std::string::npos);
+  ExpectProven(run, weights_);
+}
+
+TEST_F(VerifyCommandTest, ASteppedAndForkedRunIsProvenStepByStep) {
+  const fs::path run = MakeForkedRun();
+  EXPECT_NE(ReadText(run / "steps.jsonl").find("mppi.2~2"), std::string::npos);
+  const ProgramResult result = Verify(run);
+  EXPECT_EQ(result.code, 0) << result.err;
+  ExpectProven(run, weights_);
+}
+
+TEST_F(VerifyCommandTest, AnAlteredAndSealedRunIsRefusedWithStepAndField) {
+  const fs::path run = MakeForkedRun();
+  const std::string steps = ReadText(run / "steps.jsonl");
+  Rng rng(5);
+  for (int i = 0; i < 3; ++i) {
+    const Alteration altered = AlterRandomField(run / "steps.jsonl", rng);
+    Reseal(run);
+    const ProgramResult result = Verify(run, "1");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.err.find(": " + altered.id + ": " + altered.field + ": the run says "),
+              std::string::npos)
+        << result.err;
+    WriteFile(run / "steps.jsonl", steps);
+  }
+}
+
+TEST_F(VerifyCommandTest, OtherWeightsAndOtherVersionsAreRefusedInClearWords) {
+  const fs::path run = MakeForkedRun();
+  ProgramResult result = RunProgram({"verify", run.string()}, folder_);
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("manifest.json: inputs.generator.safetensors: expected SHA-256 "),
+            std::string::npos)
+      << result.err;
+  nlohmann::ordered_json manifest = nlohmann::ordered_json::parse(ReadText(run / "manifest.json"));
+  manifest["compiler"] = "another 1.0";
+  manifest["program_sha256"] = std::string(64, '0');
+  WriteFile(run / "manifest.json", FormatJsonIndented(manifest));
+  Reseal(run);
+  result = Verify(run);
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find(", another 1.0, "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("every decision and every number is the same"), std::string::npos);
+  manifest["planner_version"] = "9.9.9";
+  WriteFile(run / "manifest.json", FormatJsonIndented(manifest));
+  Reseal(run);
+  result = Verify(run);
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("which this program can recompute, got \"9.9.9\""), std::string::npos)
+      << result.err;
+}
+
+TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
+  const fs::path one = MakeFailingRun("one"), same = MakeFailingRun("same"),
+                 other = MakeFailingRun("other", {"--set", "mppi.sigma=0.5"});
+  ProgramResult result = RunProgram({"diff", one.string(), same.string()}, folder_);
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.out, "every step and every file the same\n");
+  result = RunProgram({"diff", one.string(), other.string()}, folder_);
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.out.rfind("path.1.screen.1: ", 0), 0U) << result.out;
+  EXPECT_NE(result.out.find("\nconfiguration\n  configuration.mppi.sigma"), std::string::npos)
+      << result.out;
+  EXPECT_NE(result.out.find(" 1.2 "), std::string::npos);
+  EXPECT_EQ(result.out.find("\nscene\n"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find(" 0.5\n"), std::string::npos);
+  const fs::path rough = MakeFailingRun("rough", {"--set", "object.friction=0.25"});
+  result = RunProgram({"diff", one.string(), rough.string()}, folder_);
+  EXPECT_EQ(result.out.rfind("path.1.screen.1: ", 0), 0U) << result.out;
+  EXPECT_NE(result.out.find("\nscene\n  bodies[0].friction"), std::string::npos) << result.out;
+}
+
+// The main job with the weights that ship, with pictures of key steps.
+TEST_F(VerifyCommandTest, TheMainJobIsProvenAndAnyChangedByteIsNamedInTwoSeconds) {
+  const ProgramResult made = RunProgram({"run", kRuler, "--pictures", "key"}, folder_);
+  ASSERT_EQ(made.code, 0) << made.err;
+  const fs::path run = folder_ / "out/ruler";
+  const ProgramResult result = RunProgram({"verify", run.string()}, folder_);
+  EXPECT_EQ(result.code, 0) << result.err;
+  ExpectProven(run, DataFolder() / "assets/weights");
+  const std::vector<std::string> files = ListRunFiles(run).files;
+  Rng rng(23);
+  for (int i = 0; i < 200; ++i) {
+    const std::string& file = files[rng.UniformInt(static_cast<std::uint32_t>(files.size()))];
+    if (fs::is_symlink(run / file)) continue;
+    const std::string bytes = ReadFile(run / file);
+    std::string changed = bytes;
+    changed[rng.UniformInt(static_cast<std::uint32_t>(bytes.size()))] ^=
+        static_cast<char>(1U << rng.UniformInt(8));
+    WriteFile(run / file, changed);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto mismatch = VerifyManifest(run);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    ASSERT_TRUE(mismatch.has_value()) << file;
+    EXPECT_EQ(mismatch->Sentence(), file + " was changed");
+    EXPECT_LT(seconds.count(), 2.0);
+    WriteFile(run / file, bytes);
+  }
+}
+
+// MRPT's own programs on real runs: their steps have grasps and hands, which sample runs lack.
+TEST_F(VerifyCommandTest, RawlogEditReadsRunsWithKeyPicturesAndWithNone) {
+  const auto edit = [](const fs::path& folder, const std::string& arguments) {
+    const std::string command =
+        "cd '" + folder.string() + "' && rawlog-edit " + arguments + " > output 2>&1";
+    return std::system(command.c_str());
+  };
+  MakeFailingRun("run");
+  MakeFailingRun("key", {}, "key");
+  for (const char* name : {"run", "key"}) {
+    const fs::path run = folder_ / name;
+    const bool has_pictures = fs::exists(run / "pictures.rawlog");
+    EXPECT_EQ(has_pictures, name == std::string("key"));
+    const auto num_steps = SplitLines(ReadText(run / "steps.jsonl")).size();
+    const std::vector<std::string> logs = has_pictures ? std::vector<std::string>{"run", "pictures"}
+                                                       : std::vector<std::string>{"run"};
+    for (const std::string& log : logs) {
+      const auto expected =
+          log == "run" ? num_steps : SplitLines(ReadText(run / "pictures.jsonl")).size();
+      const std::string in = " -i " + log + ".rawlog";
+      EXPECT_EQ(edit(run, "--info" + in), 0);
+      EXPECT_EQ(edit(run, "--list-images" + in), 0);
+      EXPECT_EQ(edit(run, "--describe" + in), 0);
+      const std::string text = ReadText(run / "output");
+      std::size_t described = 0;
+      for (std::size_t at = text.find("\"details\":"); at != std::string::npos;
+           at = text.find("\"details\":", at + 1)) {
+        ++described;
+      }
+      EXPECT_EQ(described, expected) << log;
+      EXPECT_EQ(edit(run, "--export-txt" + in), 0);
+      EXPECT_EQ(SplitLines(ReadText(run / (log + "_pose_ruler.txt"))).size(), expected + 1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pregrasp
