@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "app/geometry/cloud_planes.h"
@@ -134,12 +136,18 @@ CloudDoubts FindCloudDoubts(const SampledCloud& cloud) {
 }
 
 CloudDoubts FindCloudDoubts(const MatrixX3& points) {
-  constexpr Eigen::Index kMost = 15'000;
-  std::vector<int> rows;
-  const Eigen::Index count = std::min(points.rows(), kMost);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    rows.push_back(static_cast<int>(k * points.rows() / count));
+  constexpr std::size_t kMost = 15'000;
+  // Each place once: a point has neighbours elsewhere.
+  std::map<std::array<double, 3>, int> places;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    places.emplace(std::array{points(i, 0), points(i, 1), points(i, 2)}, static_cast<int>(i));
   }
+  std::vector<int> all, rows;
+  for (const auto& [place, row] : places) all.push_back(row);
+  std::sort(all.begin(), all.end());
+  const std::size_t count = std::min(all.size(), kMost);
+  for (std::size_t k = 0; k < count; ++k) rows.push_back(all[k * all.size() / count]);
+  if (rows.size() <= kCloudNeighbours) return {};
   SampledCloud cloud;
   cloud.P = TakeRows(points, rows);
   FindNeighbourhoods(cloud);

@@ -51,6 +51,14 @@ TEST(CloudDoubtsTest, AClosedSurfaceGivesNone) {
   }
 }
 
+TEST(CloudDoubtsTest, PointsInOnePlaceCountOnce) {
+  const MatrixX3 ball = Sample(Sphere{0.04}, 2000);
+  MatrixX3 P(ball.rows() + 600, 3);
+  P << ball, MatrixX3::Constant(600, 3, 0.01);
+  EXPECT_FALSE(FindCloudDoubts(P).has_rim());
+  EXPECT_FALSE(FindCloudDoubts(MatrixX3(MatrixX3::Constant(600, 3, 0.01))).has_rim());
+}
+
 TEST(CloudDoubtsTest, PointsOfSomeSidesEndAlongARim) {
   const MatrixX3 box = Sample(Box{Vector3(0.12, 0.05, 0.06)}, 3000);
   const MatrixX3 no_bottom = Where(box, [](const Vector3& p) { return p.z() > -0.0299; });
