@@ -161,7 +161,7 @@ class Runner {
         if (turn >= plan.lifting.size() || motions == config_.motions) continue;
         Report(name + ", hand motion", motions++, config_.motions);
         const Node& moved = MoveHand(*plan.end, plan.lifting[turn]);
-        if (best->progress < moved.progress) best = &moved;
+        if (best == plan.end || best->progress < moved.progress) best = &moved;
         if (moved.progress.reached == Progress::Reached::kOk) return ShowFrames(timeline_, moved);
       }
     }
