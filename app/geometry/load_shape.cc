@@ -108,9 +108,8 @@ void RequireFiniteCloud(const MatrixX3& P, const std::string& name, const std::s
   Eigen::Index lost = 0;
   for (Eigen::Index i = 0; i < P.rows(); ++i) lost += P.row(i).allFinite() ? 0 : 1;
   if (lost == 0) return;
-  throw InputError(
-      where, field, "a cloud of the points that were seen, with the others left out",
-      fmt::format("{}, in which {} of {} points are not finite", name, lost, P.rows()));
+  throw InputError(where, field, "a cloud of the points that were seen, with the others left out",
+                   fmt::format("{}, with {} of {} points not finite", name, lost, P.rows()));
 }
 
 struct Loader {

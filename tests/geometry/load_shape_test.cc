@@ -492,7 +492,7 @@ TEST_F(LoadShapeTest, RefusesACloudThatIsNone) {
             "a.lua:7: object.shape: expected at least 100 points, got \"few.ply\", which has 8");
   EXPECT_EQ(refusal("lost.ply"),
             "a.lua:7: object.shape: expected a cloud of the points that were seen, with the others "
-            "left out, got \"lost.ply\", in which 4 of 8 points are not finite");
+            "left out, got \"lost.ply\", with 4 of 8 points not finite");
   EXPECT_EQ(refusal("cut.ply").rfind("a.lua:7: object.shape: expected a PLY file", 0), 0U);
   EXPECT_NE(refusal("a.obj").find(".ply"), std::string::npos);
   EXPECT_NE(refusal("gone.ply").find("does not exist"), std::string::npos);

@@ -1,4 +1,4 @@
--- expect: cloud_with_nan.lua:4: object.shape: expected finite coordinates, got "nan.ply", whose vertex 61 is not finite
+-- expect: cloud_with_nan.lua:4: object.shape: expected a cloud of the points that were seen, with the others left out, got "nan.ply", with 1 of 121 points not finite
 return scene {
   name = "bad",
   object = { shape = cloud{"nan.ply"}, mass = 0.2 },
