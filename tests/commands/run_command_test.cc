@@ -180,14 +180,21 @@ constexpr char kSameAsRun[] = R"lua(
     local o = not done and paths:next():optimize {}
     if o then
       while o:step() do end
-      for plan = 1, 3 do  -- as many as differ
+      local certified = {}
+      for plan = 1, 8 do  -- as many as differ
         local is_one, t
-        if not done then is_one, t = pcall(o.certify, o, {}, plan) end
+        if #certified < 4 then is_one, t = pcall(o.certify, o, {}, plan) end
         if not is_one then break end
-        local best = t.certified and t:grasps {}:best()
-        if best and best.lift.held then
-          for frame in best:motion {}:frames() do done = frame.number > 0 end
-        end
+        if t.certified then certified[#certified + 1] = { held = t.robust.held, grasps = t:grasps {} } end
+      end
+      local first = certified[1]
+      for _, x in ipairs(certified) do
+        local a, b = x.grasps, first.grasps
+        if a.num_lifting > b.num_lifting or a.num_lifting == b.num_lifting and x.held > first.held then first = x end
+      end
+      local best = first and first.grasps:best()
+      if best and best.lift.held then
+        for frame in best:motion {}:frames() do done = frame.number > 0 end
       end
     end
   end
