@@ -58,8 +58,8 @@ class EvalCommandTest : public testing::Test {
 };
 
 TEST_F(EvalCommandTest, ShardsPutTogetherAreOneRun) {
-  const std::vector<std::string> scenes = {"--scenes", "ruler,c_shape", "--seeds",
-                                           "1",        "--first-seed",  "7"};
+  const std::vector<std::string> scenes = {"--scenes", "ruler,cardboard", "--seeds",
+                                           "1",        "--first-seed",    "7"};
   const auto with = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all = scenes;
     all.insert(all.end(), more.begin(), more.end());
@@ -81,7 +81,7 @@ TEST_F(EvalCommandTest, ShardsPutTogetherAreOneRun) {
   const nlohmann::json rows = ReadTable("whole/table1.json");
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0]["scene"], "ruler");
-  EXPECT_EQ(rows[1]["scene"], "c_shape");
+  EXPECT_EQ(rows[1]["scene"], "cardboard");
   for (const nlohmann::json& row : rows) {
     EXPECT_EQ(row["seed"], 7);
     EXPECT_TRUE(row["status"].is_string());
