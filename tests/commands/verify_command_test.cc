@@ -200,7 +200,7 @@ TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
 }
 
 // The main job with the weights that ship, with pictures of key steps.
-TEST_F(VerifyCommandTest, TheMainJobIsProvenAndTheFileOfAnyChangedByteIsNamed) {
+TEST_F(VerifyCommandTest, LongTheMainJobIsProvenAndTheFileOfAnyChangedByteIsNamed) {
   const ProgramResult made = RunProgram({"run", kRuler, "--pictures", "key"}, folder_);
   ASSERT_EQ(made.code, 0) << made.err;
   const fs::path run = folder_ / "out/ruler";
@@ -209,7 +209,7 @@ TEST_F(VerifyCommandTest, TheMainJobIsProvenAndTheFileOfAnyChangedByteIsNamed) {
   ExpectProven(run, DataFolder() / "assets/weights");
   const std::vector<std::string> files = ListRunFiles(run).files;
   Rng rng(23);
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < 200; ++i) {
     const std::string& file = files[rng.UniformInt(static_cast<std::uint32_t>(files.size()))];
     if (fs::is_symlink(run / file)) continue;
     const std::string bytes = ReadFile(run / file);
