@@ -32,13 +32,13 @@ std::vector<GraspContact> PressingContacts(const WorldState& state) {
   return pressing;
 }
 
-std::vector<GraspContact> ContactsOf(const Placement& placement) {
-  std::vector<GraspContact> contacts;
-  for (int f = 0; f < kNumPlanningFingers; ++f) {
-    const Placement::Contact& contact = placement.fingers[f];
-    if (contact.on) contacts.push_back({static_cast<Finger>(f), contact.p_OC, contact.nhat_O});
-  }
-  return contacts;
+// Indices into `worth`, the largest first, ties in order.
+template <typename T>
+std::vector<int> OrderDescending(const std::vector<T>& worth) {
+  std::vector<int> order(worth.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return worth[a] > worth[b]; });
+  return order;
 }
 
 // What ScoreGraspable tries: placements that are good without surroundings, spread over the object.
@@ -217,11 +217,9 @@ std::vector<Placement> Planner::FindConditions(const TriangleMesh& mesh,
   std::vector<double> worth = scorer->Score(likely);
   pool_.ParallelFor(static_cast<int>(likely.size()), [&](int i, int) {
     ThrowIfInterrupted();
-    worth[i] *= room_->CalcWith(X_WB, ContactsOf(likely[i]), pressing);
+    worth[i] *= room_->CalcWith(X_WB, KeptContacts({X_WB, likely[i]}), pressing);
   });
-  std::vector<int> order(likely.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return worth[a] > worth[b]; });
+  std::vector<int> order = OrderDescending(worth);
   order.resize(std::min<std::size_t>(order.size(), config_.grasp_samples * config_.pilots));
   std::vector<Placement> conditions;
   for (const int i : order) conditions.push_back(likely[i]);
@@ -259,9 +257,7 @@ std::vector<Placement> Planner::ChooseConditions(const ContactPlaces& places,
     worth[i / kPilots].first += pilots[i].raw.feasible() ? 1 : 0;
     worth[i / kPilots].second += pilots[i].raw.kinematics.has_value() ? 1 : 0;
   }
-  std::vector<int> order(conditions.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return worth[a] > worth[b]; });
+  const std::vector<int> order = OrderDescending(worth);
   std::vector<Placement> chosen;
   for (const int i : order) {
     const bool enough = 2 * std::ssize(chosen) >= config_.grasp_samples;

@@ -43,7 +43,7 @@ struct PlannerConfig {
   CertifyConfig certify;
   PlacementSearchConfig placements;
   /// For each sample so many placements of the best score, of which those with the most room for
-  /// the rest of a grasp are completed.
+  /// the rest of a grasp are tried.
   int placement_pool = 10;
   /// And of these for each sample so many are tried with a generated grasp or two: the samples
   /// complete those in which that was feasible.

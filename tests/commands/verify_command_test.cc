@@ -213,10 +213,7 @@ TEST_F(VerifyCommandTest, LongTheMainJobIsProvenAndTheFileOfAnyChangedByteIsName
     const std::string& file = files[rng.UniformInt(static_cast<std::uint32_t>(files.size()))];
     if (fs::is_symlink(run / file)) continue;
     const std::string bytes = ReadFile(run / file);
-    std::string changed = bytes;
-    changed[rng.UniformInt(static_cast<std::uint32_t>(bytes.size()))] ^=
-        static_cast<char>(1U << rng.UniformInt(8));
-    WriteFile(run / file, changed);
+    WriteFile(run / file, FlipRandomBit(bytes, rng));
     const auto mismatch = VerifyManifest(run);
     ASSERT_TRUE(mismatch.has_value()) << file;
     EXPECT_EQ(mismatch->Sentence(), file + " was changed");

@@ -92,6 +92,13 @@ inline Alteration AlterRandomField(const std::filesystem::path& file, Rng& rng) 
   return alteration;
 }
 
+/// The bytes with one random bit turned over.
+inline std::string FlipRandomBit(std::string bytes, Rng& rng) {
+  bytes[rng.UniformInt(static_cast<std::uint32_t>(bytes.size()))] ^=
+      static_cast<char>(1U << rng.UniformInt(8));
+  return bytes;
+}
+
 /// Alters a random cell of a table, its header left alone. @returns "line 7: COLUMN".
 inline std::string AlterRandomCell(const std::filesystem::path& file, Rng& rng) {
   std::vector<std::string> lines = SplitLines(ReadFile(file));

@@ -6,6 +6,7 @@
 #include "app/core/json_text.h"
 #include "app/core/sha256.h"
 #include "app/recording/build_info.h"
+#include "tests/recording/alteration.h"
 #include "tests/recording/sample_run.h"
 
 namespace pregrasp {
@@ -67,10 +68,7 @@ TEST_F(ManifestTest, AnyChangedByteOfAnyFileIsFound) {
     const std::string& file = files[static_cast<std::size_t>(i) % files.size()];
     if (fs::is_symlink(run_ / file)) continue;
     const std::string bytes = ReadFile(run_ / file);
-    std::string changed = bytes;
-    changed[rng.UniformInt(static_cast<std::uint32_t>(bytes.size()))] ^=
-        static_cast<char>(1U << rng.UniformInt(8));
-    WriteFile(run_ / file, changed);
+    WriteFile(run_ / file, FlipRandomBit(bytes, rng));
     const auto mismatch = VerifyManifest(run_);
     ASSERT_TRUE(mismatch.has_value()) << file << " change " << i;
     EXPECT_EQ(mismatch->file, file);
