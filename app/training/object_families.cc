@@ -336,20 +336,198 @@ Draft Dish(Rng& rng) {
           rng.Uniform(1000.0, 2300.0)};
 }
 
+// Jam, pickles, coffee: a body, a short neck, a wide lid.
+Draft Jar(Rng& rng) {
+  const double r = rng.Uniform(0.025, 0.052), h = rng.Uniform(0.06, 0.17);
+  const double lid = r * rng.Uniform(0.8, 1.0), neck = 0.9 * lid, thick = rng.Uniform(0.012, 0.02);
+  return MakeLathe({{0.92 * r, 0.0},
+                    {r, 0.005},
+                    {r, h - thick - 0.015},
+                    {neck, h - thick - 0.003},
+                    {neck, h - thick},
+                    {lid, h - thick},
+                    {lid, h}},
+                   Draw(rng, kLiquid));
+}
+
+// Wine glasses, egg cups, candlesticks: a foot, a stem, a bowl.
+Draft Goblet(Rng& rng) {
+  const double r = rng.Uniform(0.026, 0.045), h = rng.Uniform(0.08, 0.22);
+  const double foot = r * rng.Uniform(0.7, 1.0), stem = rng.Uniform(0.005, 0.011);
+  const double bowl = h * rng.Uniform(0.25, 0.6), t = 0.003;
+  return MakeLathe({{foot, 0.0},
+                    {foot, 0.004},
+                    {stem, 0.012},
+                    {stem, bowl},
+                    {r, bowl + 0.4 * (h - bowl)},
+                    {0.9 * r, h},
+                    {0.9 * r - t, h},
+                    {r - t, bowl + 0.4 * (h - bowl)},
+                    {stem, bowl + 0.006}},
+                   Draw(rng, kCeramic));
+}
+
+// A bottle with a trigger head.
+Draft Spray(Rng& rng) {
+  const double r = rng.Uniform(0.028, 0.045), h = rng.Uniform(0.16, 0.27);
+  const double head = rng.Uniform(0.03, 0.045), body = h - head, out = rng.Uniform(0.05, 0.08);
+  TriangleMesh mesh = Lathe({{r, -0.5 * h},
+                             {r, 0.65 * body - 0.5 * h},
+                             {0.4 * r, body - 0.012 - 0.5 * h},
+                             {0.4 * r, body + 0.004 - 0.5 * h}});
+  Union shape;
+  shape.parts = {Place(MakeMeshShape(std::move(mesh)), {0.0, 0.0, 0.0}),
+                 Place(Box{{2.0 * out, 0.024, head}}, {0.0, 0.0, 0.5 * (h - head)})};
+  return {Millimetres({2.0 * std::max(r, out), 2.0 * r, h}), shape, Draw(rng, kLiquid)};
+}
+
+// Ladles, spoons, hand mirrors, bats for table tennis: a flat handle and a round end.
+Draft Ladle(Rng& rng) {
+  const double r = rng.Uniform(0.022, 0.075), handle = rng.Uniform(0.09, 0.20);
+  const double h = rng.Uniform(0.006, 0.022), w = rng.Uniform(0.012, 0.026);
+  Union shape;
+  shape.parts = {Place(Cylinder{r, h}, {-0.5 * handle, 0.0, 0.0}),
+                 Place(Box{{handle + 0.01, w, std::min(h, 0.012)}}, {r - 0.005, 0.0, 0.0})};
+  return {Millimetres({2.0 * r + handle, 2.0 * r, h}), shape, Draw(rng, kWood)};
+}
+
+// Picture frames, gaskets, embroidery hoops: four bars about a hole.
+Draft Frame(Rng& rng) {
+  const double x = rng.Uniform(0.10, 0.30), y = x * rng.Uniform(0.55, 1.0);
+  const double w = rng.Uniform(0.012, 0.035), h = rng.Uniform(0.006, 0.026);
+  Union shape;
+  shape.parts = {Place(Box{{x, w, h}}, {0.0, 0.5 * (y - w), 0.0}),
+                 Place(Box{{x, w, h}}, {0.0, 0.5 * (w - y), 0.0}),
+                 Place(Box{{w, y, h}}, {0.5 * (x - w), 0.0, 0.0}),
+                 Place(Box{{w, y, h}}, {0.5 * (w - x), 0.0, 0.0})};
+  return {Millimetres({x, y, h}), shape, Draw(rng, kWood)};
+}
+
+// Chocolate, crayons, tins, blocks of six or eight sides.
+Draft Prism(Rng& rng) {
+  const int sides = 5 + static_cast<int>(rng.UniformInt(4));
+  const double r = rng.Uniform(0.018, 0.065), h = rng.Uniform(0.03, 0.20);
+  const auto section = [&](double z) {
+    Ring ring;
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2.0 * kPi * k / sides;
+      ring.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+    }
+    return ring;
+  };
+  TriangleMesh mesh = SkinRings({section(-0.5 * h), section(0.5 * h)});
+  return {fmt::format("{} sides, ", sides) + Millimetres({2.0 * r, h}),
+          MakeMeshShape(std::move(mesh)), Draw(rng, kWood)};
+}
+
+// Dumbbells, reels, rolling toys: a bar between two discs.
+Draft Dumbbell(Rng& rng) {
+  const double r = rng.Uniform(0.022, 0.045), disc = rng.Uniform(0.015, 0.045);
+  const double length = rng.Uniform(0.10, 0.22), bar = r * rng.Uniform(0.3, 0.6);
+  const double at = 0.5 * (length - disc);
+  Union shape;
+  shape.parts = {Place(Cylinder{bar, length - disc}, {0.0, 0.0, 0.0}),
+                 Place(Cylinder{r, disc}, {0.0, 0.0, at}),
+                 Place(Cylinder{r, disc}, {0.0, 0.0, -at})};
+  return {Millimetres({length, 2.0 * r}), shape, rng.Uniform(600.0, 2500.0)};
+}
+
+// Pipes' joints, handles, toys: a T of two round bars.
+Draft Tee(Rng& rng) {
+  const double r = rng.Uniform(0.009, 0.024), across = rng.Uniform(0.07, 0.18);
+  const double down = rng.Uniform(0.06, 0.18), thin = r * rng.Uniform(0.6, 1.0);
+  Union shape;
+  shape.parts = {Place(Cylinder{r, across}, {0.0, 0.0, 0.5 * (down - r)}, {0.0, 0.5 * kPi, 0.0}),
+                 Place(Cylinder{thin, down}, {0.0, 0.0, -0.5 * r})};
+  return {Millimetres({across, 2.0 * r, down + r}), shape, Draw(rng, kPlastic)};
+}
+
+// Baskets, buckets, tool boxes: open at the top, with an arch over it.
+Draft Basket(Rng& rng) {
+  const double x = rng.Uniform(0.09, 0.20), y = x * rng.Uniform(0.6, 1.0);
+  const double h = rng.Uniform(0.05, 0.11), t = rng.Uniform(0.003, 0.006);
+  const double arch = rng.Uniform(0.05, 0.09), bar = rng.Uniform(0.008, 0.014);
+  const double corner = 0.012, s = rng.Uniform(0.75, 1.0), low = -0.5 * (h + arch), top = low + h;
+  TriangleMesh mesh =
+      SkinRings({RoundedRectangle(s * x, s * y, corner, low), RoundedRectangle(x, y, corner, top),
+                 RoundedRectangle(x - 2.0 * t, y - 2.0 * t, corner - t, top),
+                 RoundedRectangle(s * x - 2.0 * t, s * y - 2.0 * t, corner - t, low + t)});
+  const double side = 0.5 * (x - bar), foot = 0.02;  // the arch begins in the wall
+  const Box post{{bar, bar, arch + foot}};
+  const double z = top + 0.5 * (arch - foot);
+  Union shape;
+  shape.parts = {Place(MakeMeshShape(std::move(mesh)), {0.0, 0.0, 0.0}),
+                 Place(post, {side, 0.0, z}), Place(post, {-side, 0.0, z}),
+                 Place(Box{{x, bar, bar}}, {0.0, 0.0, top + arch - 0.5 * bar})};
+  return {Millimetres({x, y, h + arch}), shape, Draw(rng, kPlastic)};
+}
+
+// Brushes, scrubbers, irons: a head and a handle above it.
+Draft Brush(Rng& rng) {
+  const double x = rng.Uniform(0.07, 0.16), y = rng.Uniform(0.03, 0.075);
+  const double head = rng.Uniform(0.015, 0.035), rise = rng.Uniform(0.03, 0.05);
+  const double bar = rng.Uniform(0.012, 0.024), h = head + rise;
+  const double post = rise - bar;
+  Union shape;
+  shape.parts = {Place(Box{{x, y, head}}, {0.0, 0.0, 0.5 * (head - h)}),
+                 Place(Box{{x, bar, bar}}, {0.0, 0.0, 0.5 * (h - bar)}),
+                 Place(Box{{bar, bar, post + 0.004}}, {0.4 * x, 0.0, 0.5 * (head - bar)}),
+                 Place(Box{{bar, bar, post + 0.004}}, {-0.4 * x, 0.0, 0.5 * (head - bar)})};
+  return {Millimetres({x, y, h}), shape, Draw(rng, kWood)};
+}
+
+// Flower pots, lamp shades, funnels upside down: a full cone without its tip.
+Draft Cone(Rng& rng) {
+  const double r = rng.Uniform(0.028, 0.065), h = rng.Uniform(0.04, 0.16);
+  const double tip = r * rng.Uniform(0.25, 0.85);
+  const bool up = rng.UniformInt(2) == 0;
+  return MakeLathe(
+      up ? std::vector<Vector2>{{r, 0.0}, {tip, h}} : std::vector<Vector2>{{tip, 0.0}, {r, h}},
+      Draw(rng, kCarton));
+}
+
+// Soap, mice, glasses' cases, pebbles: round everywhere, flatter than wide.
+Draft Soap(Rng& rng) {
+  const double x = rng.Uniform(0.06, 0.17), y = x * rng.Uniform(0.5, 0.85);
+  const double h = rng.Uniform(0.018, 0.05);
+  std::vector<Ring> rings;
+  for (int k = 0; k <= 8; ++k) {
+    const double angle = kPi * (k / 8.0 - 0.5), s = std::sqrt(0.12 + 0.88 * std::cos(angle));
+    rings.push_back(RoundedRectangle(s * x, s * y, 0.45 * s * y, 0.5 * h * std::sin(angle)));
+  }
+  TriangleMesh mesh = SkinRings(rings);
+  return {Millimetres({x, y, h}), MakeMeshShape(std::move(mesh)), rng.Uniform(300.0, 1100.0)};
+}
+
+// Staplers, bookends, shoes, steps: a low part and a high one.
+Draft Step(Rng& rng) {
+  const double x = rng.Uniform(0.08, 0.20), w = rng.Uniform(0.03, 0.09);
+  const double h = rng.Uniform(0.04, 0.12), low = h * rng.Uniform(0.15, 0.5);
+  const double high = x * rng.Uniform(0.15, 0.6);
+  Union shape;
+  shape.parts = {Place(Box{{x, w, low}}, {0.0, 0.0, 0.5 * (low - h)}),
+                 Place(Box{{high, w, h}}, {0.5 * (high - x), 0.0, 0.0})};
+  return {Millimetres({x, w, h}), shape, Draw(rng, kCarton)};
+}
+
 using Family = std::pair<std::string, std::function<Draft(Rng&)>>;
 
 const std::vector<Family>& Families() {
   static const std::vector<Family> families = {
-      {"carton", Carton}, {"book", Book},       {"slab", Slab},
-      {"strip", Strip},   {"can", Can},         {"rod", Rod},
-      {"plate", Plate},   {"bowl", Bowl},       {"cup", Cup},
-      {"bottle", Bottle}, {"flask", Flask},     {"tub", Tub},
-      {"tray", Tray},     {"bracket", Bracket}, {"clamp", Clamp},
-      {"mug", Mug},       {"hammer", Hammer},   {"driver", Screwdriver},
-      {"pan", Pan},       {"ball", Ball},       {"wedge", Wedge},
-      {"panel", Panel},   {"console", Console}, {"crate", Crate},
-      {"disc", Disc},     {"remote", Remote},   {"block", Block},
-      {"dish", Dish}};
+      {"carton", Carton}, {"book", Book},         {"slab", Slab},
+      {"strip", Strip},   {"can", Can},           {"rod", Rod},
+      {"plate", Plate},   {"bowl", Bowl},         {"cup", Cup},
+      {"bottle", Bottle}, {"flask", Flask},       {"tub", Tub},
+      {"tray", Tray},     {"bracket", Bracket},   {"clamp", Clamp},
+      {"mug", Mug},       {"hammer", Hammer},     {"driver", Screwdriver},
+      {"pan", Pan},       {"ball", Ball},         {"wedge", Wedge},
+      {"panel", Panel},   {"console", Console},   {"crate", Crate},
+      {"disc", Disc},     {"remote", Remote},     {"block", Block},
+      {"dish", Dish},     {"jar", Jar},           {"goblet", Goblet},
+      {"spray", Spray},   {"ladle", Ladle},       {"frame", Frame},
+      {"prism", Prism},   {"dumbbell", Dumbbell}, {"tee", Tee},
+      {"basket", Basket}, {"brush", Brush},       {"cone", Cone},
+      {"soap", Soap},     {"step", Step}};
   return families;
 }
 
