@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <gnu/libc-version.h>
-#include <mrpt/version.h>
 #include <zlib.h>
 
 #include <Eigen/Core>
@@ -77,8 +76,7 @@ std::map<std::string, std::string> BuildLibraries() {
        fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
       {"glibc", gnu_get_libc_version()},
       {"lua", PREGRASP_LUA_VERSION},
-      {"mrpt",
-       fmt::format("{}.{}.{}", MRPT_VERSION >> 8, MRPT_VERSION >> 4 & 15, MRPT_VERSION & 15)},
+      {"mrpt", PREGRASP_MRPT_VERSION},
       {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,
                                     NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
       {"zlib", zlibVersion()},
