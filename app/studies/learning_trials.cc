@@ -32,10 +32,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kNumCases = 3;  // thumb, index, both: GeneratorOf's order
-constexpr int kGraspsOfObject = 6, kSamplesOfCondition = 4;
-constexpr int kContactsOfPose = 200;                  // of each case
-constexpr int kPushesOfMesh = 32, kStatesOfMesh = 3;  // meshes are slow to simulate
+constexpr int kNumCases = 3;          // thumb, index, both: GeneratorOf's order
+constexpr int kContactsOfPose = 200;  // of each case
 constexpr const char* kScoreFile = "score.safetensors";
 constexpr int kPartsOfGrasp = 1000;  // streams
 constexpr double kHandSpan = 0.13;   // between contacts of one hand [m]
@@ -227,16 +225,16 @@ Json JudgeScore(const fs::path& labels, const fs::path& weights) {
 
 Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64_t end,
                   std::uint64_t seed, const fs::path& weights, const GraspLibrary& library,
-                  ThreadPool& pool) {
-  StateItemConfig config;
-  config.item = UnseenItems(objects, seed);
-  config.item.scenes = 1;
-  config.motion.pushes = kPushesOfMesh;
-  config.motion.states = kStatesOfMesh;
+                  ThreadPool& pool, const TrialConfig& config) {
+  StateItemConfig items;
+  items.item = UnseenItems(objects, seed);
+  items.item.scenes = 1;
+  items.motion.pushes = config.pushes;
+  items.motion.states = config.states;
   std::vector<Dataset> found(end - begin);
   pool.ParallelFor(static_cast<int>(found.size()), [&](int i, int) {
     ThrowIfInterrupted();
-    found[i].items.push_back(MakeStateItem(config, begin + i));
+    found[i].items.push_back(MakeStateItem(items, begin + i));
   });
   const ScoreJudge judge(weights);
   Json judged_objects = Json::array();
@@ -252,7 +250,7 @@ Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64
         });
       }
     }
-    Json object = TryGenerator(objects, index, seed, weights, library, pool);
+    Json object = TryGenerator(objects, index, seed, weights, library, pool, config);
     object["truth"] = judged.truth;
     object["score"] = judged.score;
     object["lifted"] = judged.lifted;
@@ -263,7 +261,8 @@ Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64
 }
 
 Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint64_t seed,
-                  const fs::path& weights, const GraspLibrary& library, ThreadPool& pool) {
+                  const fs::path& weights, const GraspLibrary& library, ThreadPool& pool,
+                  const TrialConfig& config) {
   const FreeObject object(UnseenItems(objects, seed), index);
   const GraspWorld world = MakeTrainingWorld(object.scene);
   const std::vector<RigidTransform> X_WB = world.StartPoses();
@@ -276,23 +275,22 @@ Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint6
 
   const int draws = PlannerConfig().grasp_draws;
   GraspSearchConfig search;
-  search.max_found = kGraspsOfObject;
+  search.max_found = config.grasps;
   const auto draw = [&](int g, int part) {  // the third index is for refinement to split
     return Rng(seed, RngStream::kProbedContacts, index, kPartsOfGrasp * g + part);
   };
   const GraspSearchResult found =
-      SearchGrasps(places, search, {}, draw(kGraspsOfObject, 0).NextU64(), pool);
+      SearchGrasps(places, search, {}, draw(config.grasps, 0).NextU64(), pool);
   std::array<Tally, kNumCases> generated, single, nearest, random;
   std::vector<GeneratedGrasp> samples, single_draws, neighbours, points;
   std::vector<int> cases;
-  for (int g = 0; g < std::min<int>(kGraspsOfObject, std::ssize(found.found)); ++g) {
+  for (int g = 0; g < std::min<int>(config.grasps, std::ssize(found.found)); ++g) {
     for (int which = 0; which < kNumCases; ++which) {
       const PlanningContacts given = GivenBy(found.found[g].contacts, which);
       Rng rng = draw(g, which);
-      const auto grasps = generator.Sample(structure, encoded, given, kSamplesOfCondition * draws,
+      const auto grasps = generator.Sample(structure, encoded, given, config.samples * draws,
                                            draw(g, kNumCases + which));
-      const std::vector<GraspPoints> near =
-          library.FindNearest(object.box, given, kSamplesOfCondition);
+      const std::vector<GraspPoints> near = library.FindNearest(object.box, given, config.samples);
       for (auto first = grasps.begin(); first != grasps.end(); first += draws) {
         const Rng refinement = draw(g, 2 * kNumCases + static_cast<int>(samples.size()));
         samples.push_back({*first, refinement, {first + 1, first + draws}});

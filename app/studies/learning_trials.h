@@ -27,6 +27,13 @@ struct JudgedLabels {
   nlohmann::ordered_json ToJson() const;
 };
 
+/// How much is tried of one object.
+struct TrialConfig {
+  int grasps = 6;               ///< whose contacts are given to the generators
+  int samples = 4;              ///< of each condition
+  int pushes = 32, states = 3;  ///< that labels are made of: few, as meshes are slow to simulate
+};
+
 /// The weights' own word on which families they never saw. @throws InputError if there is none.
 std::vector<std::string> ReadHeldOutFamilies(const std::filesystem::path& weights);
 
@@ -44,7 +51,8 @@ nlohmann::ordered_json JudgeScore(const std::filesystem::path& labels,
 /// @param index  of an item that no data set has: of `objects`, or of ObjectFamilies() if null.
 nlohmann::ordered_json TryGenerator(const LearningObjects& objects, std::int64_t index,
                                     std::uint64_t seed, const std::filesystem::path& weights,
-                                    const GraspLibrary& library, ThreadPool& pool);
+                                    const GraspLibrary& library, ThreadPool& pool,
+                                    const TrialConfig& config = {});
 
 /// The same of objects `begin` to `end` of `objects` and, beside it, labels that searches give them
 /// in a scene of each (as MakeStateItem's) with the score's answers: lists "truth", "score",
@@ -52,7 +60,8 @@ nlohmann::ordered_json TryGenerator(const LearningObjects& objects, std::int64_t
 nlohmann::ordered_json JudgeObjects(const LearningObjects& objects, std::int64_t begin,
                                     std::int64_t end, std::uint64_t seed,
                                     const std::filesystem::path& weights,
-                                    const GraspLibrary& library, ThreadPool& pool);
+                                    const GraspLibrary& library, ThreadPool& pool,
+                                    const TrialConfig& config = {});
 
 /// At each pose of a ladder the placements that the score likes best, of thumb, index and both, and
 /// what searches say of them.

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/bindings/run_program.h"
+#include "tests/commands/small_run.h"
 #include "tests/networks/random_network.h"
 
 namespace pregrasp {
@@ -23,22 +24,12 @@ class EvalCommandTest : public testing::Test {
     WriteRandomWeights(folder_ / "weights");
   }
 
-  // Items of a second or two.
   std::vector<std::string> Arguments(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"eval",
-                                          "--weights",
-                                          (folder_ / "weights").string(),
-                                          "--paths",
-                                          "1",
-                                          "--set",
-                                          "mppi.iterations=2",
-                                          "--set",
-                                          "grasps.samples=2",
-                                          "--set",
-                                          "grasps.search_sets=4096",
-                                          "--set",
-                                          "grasps.starts=2"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::vector<std::string> arguments = {"eval", "--weights", (folder_ / "weights").string(),
+                                          "--paths", "1"};
+    for (const auto& part : {SmallRun(), more}) {
+      arguments.insert(arguments.end(), part.begin(), part.end());
+    }
     return arguments;
   }
 
@@ -110,8 +101,8 @@ TEST_F(EvalCommandTest, ShardsPutTogetherAreOneRun) {
 }
 
 TEST_F(EvalCommandTest, CtrlCKeepsWhatIsDoneAndTheSameCommandGoesOn) {
-  const std::vector<std::string> arguments =
-      Arguments({"--scenes", "ruler", "--seeds", "3", "--out", "cut"});
+  const std::vector<std::string> arguments = Arguments(
+      {"--scenes", "ruler", "--seeds", "2", "--out", "cut", "--set", "fingertips.friction=0.1"});
   const TestFolder captured;
   const pid_t child = StartProgram(arguments, folder_, captured.path());
   const fs::path first = folder_ / "cut/items/item-000000.json";
@@ -132,17 +123,19 @@ TEST_F(EvalCommandTest, CtrlCKeepsWhatIsDoneAndTheSameCommandGoesOn) {
   EXPECT_EQ(rest.code, 0) << rest.err;
   EXPECT_EQ(rest.out.find("ruler seed 1: "), std::string::npos) << rest.out;
   EXPECT_EQ(ReadText(first), kept);
-  EXPECT_EQ(ReadTable("cut/table1.json").size(), 3U);
+  EXPECT_EQ(ReadTable("cut/table1.json").size(), 2U);
 }
 
 TEST_F(EvalCommandTest, AFolderOfOtherSettingsIsRefusedWithTheDifference) {
-  EXPECT_EQ(Eval({"--scenes", "ruler", "--seeds", "1", "--out", "x"}).code, 0);
-  const ProgramResult other =
-      Eval({"--scenes", "ruler", "--seeds", "1", "--out", "x", "--set", "mppi.patience=3"});
+  const auto with = [&](const std::string& seeds, const std::string& patience) {
+    return Eval({"--scenes", "ruler", "--seeds", seeds, "--out", "x", "--set",
+                 "fingertips.friction=0.1", "--set", "mppi.patience=" + patience});
+  };
+  EXPECT_EQ(with("1", "4").code, 0);
+  const ProgramResult other = with("1", "3");
   EXPECT_EQ(other.code, 2);
-  EXPECT_NE(other.err.find("mppi.patience: 3 and "), std::string::npos) << other.err;
-  const ProgramResult more = Eval({"--scenes", "ruler", "--seeds", "2", "--out", "x"});
-  EXPECT_EQ(more.code, 2);
+  EXPECT_NE(other.err.find("mppi.patience: 3 and 4"), std::string::npos) << other.err;
+  EXPECT_EQ(with("2", "4").code, 2);
 }
 
 TEST_F(EvalCommandTest, AReportHasTheTablesAndAPictureOfARunThatWasKept) {

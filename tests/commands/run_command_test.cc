@@ -9,12 +9,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <sstream>
 #include <thread>
 
+#include "app/core/data_folder.h"
+#include "app/job/run_policy.h"
 #include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
 #include "tests/bindings/run_program.h"
+#include "tests/commands/small_run.h"
 #include "tests/networks/random_network.h"
 
 namespace pregrasp {
@@ -41,12 +43,11 @@ class RunCommandTest : public testing::Test {
     return arguments;
   }
 
-  // A run of a second or two.
   std::vector<std::string> Quick(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments =
-        Arguments({"--paths", "1", "--set", "mppi.iterations=2", "--set", "grasps.samples=2",
-                   "--set", "grasps.search_sets=4096", "--set", "grasps.starts=2"});
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::vector<std::string> arguments = Arguments({"--paths", "1"});
+    for (const auto& part : {SmallRun(), more}) {
+      arguments.insert(arguments.end(), part.begin(), part.end());
+    }
     return arguments;
   }
 
@@ -65,8 +66,9 @@ TEST_F(RunCommandTest, WithoutSuccessTheRunIsCompleteAndSaysWhy) {
 }
 
 TEST_F(RunCommandTest, ALooserSettingIsWarnedOfAndTakesTheRunOutOfTheRules) {
-  const std::vector<std::string> strict = {"--set", "grasps.tip_tolerance=0.0005", "--set",
-                                           "motion.tip_tolerance=0.0005"};
+  const std::vector<std::string> strict = {"--set", "fingertips.friction=0.1",
+                                           "--set", "grasps.tip_tolerance=0.0005",
+                                           "--set", "motion.tip_tolerance=0.0005"};
   const fs::path out = folder_ / "out" / "ruler";
   RunProgram(Quick(strict), folder_);
   EXPECT_EQ(LoadRun(out).summary.within_rules, true);
@@ -176,7 +178,7 @@ constexpr char kSameAsRun[] = R"lua(
   g:score()
   g:prune {}
   local paths, done = g:paths {}, false
-  for _ = 1, PATHS do
+  for _ = 1, 2 do
     local o = not done and paths:next():optimize {}
     if o then
       while o:step() do end
@@ -218,32 +220,49 @@ void ExpectSameRun(const fs::path& a, const fs::path& b) {
   EXPECT_EQ(x, y);
 }
 
-std::string ScriptText(int paths) {
-  std::string text = kSameAsRun;
-  text.replace(text.find("PATHS"), 5, std::to_string(paths));
-  return text.replace(text.find("SCENE"), 5, kScene);
-}
-
-TEST_F(RunCommandTest, AScriptOfTheSameCommandsLeavesTheSameRunWhereNothingSucceeds) {
-  std::ofstream(folder_ / "same.lua") << ScriptText(2);
-  const std::string settings =
-      "paths.order=paper mppi.iterations=2 grasps.samples=2 grasps.max_solves=1 grasps.starts=2 "
-      "fingertips.friction=0.1";
-  std::vector<std::string> arguments = Arguments({"--paths", "2"});
-  std::istringstream words(settings);
-  for (std::string word; words >> word;) {
-    arguments.insert(arguments.end(), {"--set", word});
+class SameRunTest : public RunCommandTest {
+ protected:
+  // As a run and as a script. @returns the run's exit code.
+  int Do(const fs::path& weights, const std::string& friction) const {
+    const std::vector<std::string> flags =
+        SmallRun({"paths.order=paper", "fingertips.friction=" + friction});
+    std::vector<std::string> arguments = {"run",     kScene, "--weights",  weights.string(),
+                                          "--paths", "2",    "--pictures", "none"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    const int code = RunProgram(arguments, folder_).code;
+    std::string settings;
+    for (std::size_t i = 1; i < flags.size(); i += 2) settings += flags[i] + ' ';
+    std::string text = kSameAsRun;
+    text.replace(text.find("SCENE"), 5, kScene);
+    std::ofstream(folder_ / "same.lua") << text;
+    const ProgramResult script = RunProgram(
+        {"script", (folder_ / "same.lua").string(), settings, "--weights", weights.string()},
+        folder_);
+    EXPECT_EQ(script.code, 0) << script.err;
+    ExpectSameRun(folder_ / "out" / "ruler", folder_ / "out" / "script");
+    return code;
   }
-  EXPECT_EQ(RunProgram(arguments, folder_).code, 3);
-  const ProgramResult script = RunProgram(
-      {"script", (folder_ / "same.lua").string(), settings, "--weights", Weights().string()},
-      folder_);
-  EXPECT_EQ(script.code, 0) << script.err;
-  ExpectSameRun(folder_ / "out" / "ruler", folder_ / "out" / "script");
+};
+
+TEST_F(SameRunTest, AScriptOfTheSameCommandsLeavesTheSameRunWhereNothingSucceeds) {
+  EXPECT_EQ(Do(Weights(), "0.1"), 3);
 }
 
-// The main job with the weights that ship.
-TEST(MainJobTest, TheRulerIsGrasped) {
+TEST_F(SameRunTest, AScriptOfTheSameCommandsLeavesTheSameRunWhereTheRulerIsGrasped) {
+  EXPECT_EQ(Do(DataFolder() / "assets" / "weights", "0.8"), 0);
+}
+
+// How many lifts are held on the way from `certified` on.
+int CountLifting(const LoadedRun& run, const CertifyFacts* certified) {
+  return static_cast<int>(std::count_if(run.steps.begin(), run.steps.end(), [&](const auto& step) {
+    const auto* lift = std::get_if<LiftFacts>(&step.details);
+    return lift != nullptr && lift->held && run.FindBefore<CertifyFacts>(step) == certified;
+  }));
+}
+
+// The main job with the weights that ship, as a user starts it: of the first path's plans the one
+// with most lifting grasps is taken on. A plan with more of them has been tried before, in vain.
+TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
   const TestFolder temporary;
   const fs::path& folder = temporary.path();
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
@@ -255,19 +274,30 @@ TEST(MainJobTest, TheRulerIsGrasped) {
   EXPECT_EQ(run.summary.start_grasps.feasible, 0);
   EXPECT_EQ(run.summary.motion.failed, 0);
   EXPECT_TRUE(fs::exists(folder / "out" / "ruler" / "motion.csv"));
-}
 
-TEST(MainJobTest, AScriptOfTheSameCommandsLeavesTheSameRun) {
-  const TestFolder temporary;
-  const fs::path& folder = temporary.path();
-  setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
-  std::ofstream(folder / "same.lua") << ScriptText(10);
-  const std::string order = "paths.order=paper";
-  EXPECT_EQ(RunProgram({"run", kScene, "--pictures", "none", "--set", order}, folder).code, 0);
-  const ProgramResult script =
-      RunProgram({"script", (folder / "same.lua").string(), order}, folder);
-  EXPECT_EQ(script.code, 0) << script.err;
-  ExpectSameRun(folder / "out" / "ruler", folder / "out" / "script");
+  const auto* taken = run.FindBefore<CertifyFacts>(run.steps.back());
+  ASSERT_NE(taken, nullptr);
+  const auto has_motion = [&](const CertifyFacts* plan) {
+    return std::any_of(run.steps.begin(), run.steps.end(), [&](const StepFacts& step) {
+      return step.stage() == "motion" && run.FindBefore<CertifyFacts>(step) == plan;
+    });
+  };
+  int certified = 0;
+  for (const StepFacts& step : run.steps) {
+    const auto* plan = std::get_if<CertifyFacts>(&step.details);
+    if (plan == nullptr || !plan->certified || plan->path != taken->path) continue;
+    ++certified;
+    if (plan == taken || has_motion(plan)) continue;
+    EXPECT_LE(CountLifting(run, plan), CountLifting(run, taken)) << step.id;
+  }
+  EXPECT_GE(certified, 2);
+  EXPECT_LE(certified, RunConfig().plans);
+
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "out" / "ruler")) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  }
+  EXPECT_LT(bytes, 12'000'000U);  // the bound of a run's directory is 60 MB
 }
 
 TEST(MainJobLongTest, FourSeedsOfFiveSucceed) {

@@ -7,6 +7,7 @@
 #include "app/core/data_folder.h"
 #include "app/session/verification.h"
 #include "tests/bindings/run_program.h"
+#include "tests/commands/small_run.h"
 #include "tests/networks/random_network.h"
 #include "tests/recording/alteration.h"
 
@@ -47,19 +48,12 @@ class VerifyCommandTest : public testing::Test {
   fs::path MakeFailingRun(const std::string& name = "failing",
                           const std::vector<std::string>& more = {},
                           const std::string& pictures = "none") const {
-    std::vector<std::string> arguments = {"run",        kRuler,
-                                          "--weights",  weights_.string(),
-                                          "--out",      name,
-                                          "--paths",    "1",
-                                          "--set",      "mppi.iterations=2",
-                                          "--set",      "grasps.samples=2",
-                                          "--set",      "grasps.search_sets=4096",
-                                          "--set",      "grasps.starts=2",
-                                          "--set",      "screen.paths=4",
-                                          "--set",      "fingertips.friction=0.1",
-                                          "--threads",  "1",
-                                          "--pictures", pictures};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::vector<std::string> arguments = {"run",       kRuler, "--weights",  weights_.string(),
+                                          "--out",     name,   "--paths",    "1",
+                                          "--threads", "1",    "--pictures", pictures};
+    for (const auto& part : {SmallRun({"fingertips.friction=0.1"}), more}) {
+      arguments.insert(arguments.end(), part.begin(), part.end());
+    }
     const ProgramResult result = RunProgram(arguments, folder_);
     EXPECT_EQ(result.code, 3) << result.err;
     return folder_ / name;
@@ -221,39 +215,31 @@ TEST_F(VerifyCommandTest, LongTheMainJobIsProvenAndTheFileOfAnyChangedByteIsName
   }
 }
 
-// MRPT's own programs on real runs: their steps have grasps and hands, which sample runs lack.
-TEST_F(VerifyCommandTest, RawlogEditReadsRunsWithKeyPicturesAndWithNone) {
-  const auto edit = [](const fs::path& folder, const std::string& arguments) {
+// MRPT's own programs on a real run: its steps have grasps and hands, which sample runs lack.
+TEST_F(VerifyCommandTest, RawlogEditReadsBothLogsOfARunWithKeyPictures) {
+  const fs::path run = MakeFailingRun("key", {}, "key");
+  const auto edit = [&](const std::string& arguments) {
     const std::string command =
-        "cd '" + folder.string() + "' && rawlog-edit " + arguments + " > output 2>&1";
+        "cd '" + run.string() + "' && rawlog-edit " + arguments + " > output 2>&1";
     return std::system(command.c_str());
   };
-  MakeFailingRun("run");
-  MakeFailingRun("key", {}, "key");
-  for (const char* name : {"run", "key"}) {
-    const fs::path run = folder_ / name;
-    const bool has_pictures = fs::exists(run / "pictures.rawlog");
-    EXPECT_EQ(has_pictures, name == std::string("key"));
-    const auto num_steps = SplitLines(ReadText(run / "steps.jsonl")).size();
-    const std::vector<std::string> logs = has_pictures ? std::vector<std::string>{"run", "pictures"}
-                                                       : std::vector<std::string>{"run"};
-    for (const std::string& log : logs) {
-      const auto expected =
-          log == "run" ? num_steps : SplitLines(ReadText(run / "pictures.jsonl")).size();
-      const std::string in = " -i " + log + ".rawlog";
-      EXPECT_EQ(edit(run, "--info" + in), 0);
-      EXPECT_EQ(edit(run, "--list-images" + in), 0);
-      EXPECT_EQ(edit(run, "--describe" + in), 0);
-      const std::string text = ReadText(run / "output");
-      std::size_t described = 0;
-      for (std::size_t at = text.find("\"details\":"); at != std::string::npos;
-           at = text.find("\"details\":", at + 1)) {
-        ++described;
-      }
-      EXPECT_EQ(described, expected) << log;
-      EXPECT_EQ(edit(run, "--export-txt" + in), 0);
-      EXPECT_EQ(SplitLines(ReadText(run / (log + "_pose_ruler.txt"))).size(), expected + 1);
+  for (const auto& [log, lines] :
+       {std::pair("run", "steps.jsonl"), {"pictures", "pictures.jsonl"}}) {
+    const auto expected = SplitLines(ReadText(run / lines)).size();
+    const std::string in = std::string(" -i ") + log + ".rawlog";
+    EXPECT_EQ(edit("--info" + in), 0);
+    EXPECT_EQ(edit("--list-images" + in), 0);
+    EXPECT_EQ(edit("--describe" + in), 0);
+    const std::string text = ReadText(run / "output");
+    std::size_t described = 0;
+    for (std::size_t at = text.find("\"details\":"); at != std::string::npos;
+         at = text.find("\"details\":", at + 1)) {
+      ++described;
     }
+    EXPECT_EQ(described, expected) << log;
+    EXPECT_EQ(edit("--export-txt" + in), 0);
+    EXPECT_EQ(SplitLines(ReadText(run / (std::string(log) + "_pose_ruler.txt"))).size(),
+              expected + 1);
   }
 }
 

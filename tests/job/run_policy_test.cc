@@ -265,52 +265,5 @@ TEST(MotionlessPlanTest, FailsWhereTheRulerLiesAndTheSamePlannerGraspsItOverTheE
   }
 }
 
-// How many lifts are held on the way from `certified` on.
-int CountLifting(const Timeline& timeline, const Timeline::Node& certified) {
-  int lifting = 0;
-  for (const auto& node : timeline.nodes()) {
-    const auto* lift = std::get_if<LiftFacts>(&node->facts.details);
-    if (lift == nullptr || !lift->held) continue;
-    for (const Timeline::Node* at = node.get(); at != nullptr; at = at->parent) {
-      if (at == &certified) ++lifting;
-    }
-  }
-  return lifting;
-}
-
-TEST(PlansOfAPathTest, TheOneWithMostLiftingGraspsIsTakenOn) {
-  JobSetup setup;
-  setup.scene = MakeRulerScene();
-  setup.weights = PREGRASP_SOURCE_DIR "/assets/weights";
-  Job job(setup, 0);
-  Timeline timeline(job);
-  RunConfig run;
-  run.paths = 1;
-  const RunResult result = RunPlanner(timeline, run, {});
-  ASSERT_EQ(result.status, "ok");
-  const Timeline::Node* taken = result.end;
-  while (!std::holds_alternative<CertifyFacts>(taken->facts.details)) taken = taken->parent;
-  const auto has_motion = [&](const Timeline::Node& certified) {
-    return std::any_of(timeline.nodes().begin(), timeline.nodes().end(), [&](const auto& node) {
-      if (node->facts.id.rfind("motion.", 0) != 0) return false;
-      const Timeline::Node* at = node.get();
-      while (at != nullptr && at != &certified) at = at->parent;
-      return at != nullptr;
-    });
-  };
-  int certified = 0;
-  for (const auto& node : timeline.nodes()) {
-    const auto* facts = std::get_if<CertifyFacts>(&node->facts.details);
-    if (facts == nullptr || !facts->certified) continue;
-    ++certified;
-    // Another with more of them has been tried before, in vain.
-    if (node.get() != taken && !has_motion(*node)) {
-      EXPECT_LE(CountLifting(timeline, *node), CountLifting(timeline, *taken)) << node->id();
-    }
-  }
-  EXPECT_GE(certified, 2);
-  EXPECT_LE(certified, run.plans);
-}
-
 }  // namespace
 }  // namespace pregrasp

@@ -39,7 +39,8 @@ TEST(LearningTrialsTest, TheShippedScoreKnowsFamiliesThatItNeverSaw) {
 TEST(LearningTrialsTest, GeneratedGraspsAreBetterThanRandomPoints) {
   ThreadPool pool(2);
   int generated = 0, random = 0, samples = 0;
-  const auto facts = TryGenerator(nullptr, ItemOfFamily("flask", 0), 7, Weights(), Library(), pool);
+  const auto facts =
+      TryGenerator(nullptr, ItemOfFamily("flask", 0), 7, Weights(), Library(), pool, {.grasps = 4});
   for (const auto& [name, counts] : facts["generator"].items()) {
     EXPECT_EQ(counts["overlapping"], 0) << name;
     for (const char* other : {"random", "nearest", "single_draw"}) {
@@ -54,9 +55,12 @@ TEST(LearningTrialsTest, GeneratedGraspsAreBetterThanRandomPoints) {
 }
 
 TEST(LearningTrialsTest, ATrialIsAFunctionOfItsArguments) {
-  ThreadPool one(1), two(2);
-  const auto a = TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), Library(), one);
-  EXPECT_EQ(a, TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), Library(), two));
+  const auto run = [](int threads) {
+    ThreadPool pool(threads);
+    return TryGenerator(nullptr, ItemOfFamily("wedge", 1), 3, Weights(), Library(), pool,
+                        {.grasps = 1, .samples = 2});
+  };
+  EXPECT_EQ(run(1), run(2));
 }
 
 TEST(LearningTrialsTest, GivenObjectsGetLabelsAndSamples) {
@@ -65,7 +69,9 @@ TEST(LearningTrialsTest, GivenObjectsGetLabelsAndSamples) {
   const auto objects =
       std::make_shared<const std::vector<TrainingObject>>(std::vector<TrainingObject>{can, rod});
   ThreadPool pool(2);
-  const auto judged = JudgeObjects(objects, 1, 2, 4, Weights(), Library(), pool)["objects"];
+  const auto judged =
+      JudgeObjects(objects, 1, 2, 4, Weights(), Library(), pool,
+                   {.grasps = 1, .samples = 1, .pushes = 8, .states = 2})["objects"];
   ASSERT_EQ(judged.size(), 1U);
   EXPECT_EQ(judged[0]["object"], "rod");
   EXPECT_GT(judged[0]["truth"].size(), 50U);
