@@ -182,7 +182,7 @@ class DetourFinder {
     if (!kept_.empty()) return places;
     // The whole hand back along the forearm, off the palm's back, up, and between them.
     const Matrix3& R_WH = at.X_WH.linear();
-    const Vector3 back = -R_WH.col(2), dorsal = R_WH.col(1), up = Vector3::UnitZ();
+    const Vector3 back = -R_WH.col(2), dorsal = R_WH.col(1), up = problem_.up_W;
     for (const Vector3& direction : {Vector3(back), Vector3(dorsal), Vector3(up),
                                      Vector3(back + dorsal), Vector3(back + up)}) {
       HandConfiguration moved = at;

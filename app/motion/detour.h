@@ -28,6 +28,7 @@ struct DetourProblem {
   std::vector<RigidTransform> X_WB;
   /// Contacts at the ends. A finger that has the same contact at both keeps it all along.
   std::vector<IkContact> from_contacts, to_contacts;
+  Vector3 up_W = Vector3::UnitZ();  ///< against gravity, unit length
 };
 
 enum class DetourKind {

@@ -164,6 +164,7 @@ DetourProblem HandMotion::MakeDetour(const MotionFrameTask& begin, const MotionF
   problem.X_WB = end.X_WB;
   problem.from_contacts = MakeIkProblem(begin).contacts;
   problem.to_contacts = MakeIkProblem(end).contacts;
+  problem.up_W = task_->up_W;
   return problem;
 }
 
@@ -172,7 +173,7 @@ DetourProblem HandMotion::MakeDetour(const MotionFrameTask& begin, const MotionF
 // if there is none, along the clearest.
 MotionFrame HandMotion::SolveApproachStart(const HandConfiguration& first_contact) const {
   const Matrix3& R_WH = first_contact.X_WH.linear();
-  const Vector3 back = -R_WH.col(2), dorsal = R_WH.col(1), up = Vector3::UnitZ();
+  const Vector3 back = -R_WH.col(2), dorsal = R_WH.col(1), up = task_->up_W;
   const std::array<Vector3, 6> directions = {up + back,     up,    up + dorsal, back,
                                              back + dorsal, dorsal};
   const MotionFrameTask& task = task_->frames.front();

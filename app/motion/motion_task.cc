@@ -99,7 +99,10 @@ double FindStill(const Simulation& simulation) {
 
 class TaskBuilder {
  public:
-  TaskBuilder(const World& world, double fps) : world_(world) { task_.fps = fps; }
+  TaskBuilder(const World& world, double fps) : world_(world) {
+    task_.fps = fps;
+    task_.up_W = -world.scene().gravity.normalized();
+  }
 
   void Add(MotionPhase phase, const WorldState& state, const Contacts& contacts) {
     MotionFrameTask frame;

@@ -36,6 +36,7 @@ struct MotionTask {
   /// as long as the hand needs. Bodies stand in it and fingers that are on stay so.
   std::vector<bool> is_free;
   double fps = 30.0;
+  Vector3 up_W = Vector3::UnitZ();  ///< against gravity, unit length
 
   int num_intervals() const { return static_cast<int>(is_free.size()); }
   /// Of an interval: steps from frame to frame.

@@ -122,6 +122,14 @@ TEST_F(HandMotionTest, TheTaskKeepsTheTimesOfThePhysicsAndMarksEveryChangeOfCont
   EXPECT_EQ(task.frames[task.keyframes[4]].X_WB_way.size(), 1U);
 }
 
+TEST_F(HandMotionTest, UpIsAgainstGravity) {
+  EXPECT_EQ(Make(MotionConfig()).task().up_W, Vector3::UnitZ());
+  scene_.gravity = Vector3(-6.0, 0.0, -8.0);
+  const MotionTask task =
+      BuildMotionTask(World(scene_), trace_, {lift_, closing_t_, lift_t_}, MotionTiming());
+  EXPECT_LT((task.up_W - Vector3(0.6, 0.0, 0.8)).norm(), 1e-15);
+}
+
 TEST_F(HandMotionTest, AFreePartCanHaveAnyNumberOfStepsAndNothingElseChanges) {
   const MotionTask task =
       BuildMotionTask(*world_, trace_, {lift_, closing_t_, lift_t_}, MotionTiming());
