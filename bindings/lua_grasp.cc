@@ -132,14 +132,14 @@ Pushed Ik(lua_State* L, IkOptions& options) {
   IkProblem problem;
   problem.contacts = options.contacts;
   const Rng rng(static_cast<std::uint64_t>(options.seed), RngStream::kScriptIk);
-  const HandModel& hand = ShadowHand();
   IkResult result;
   if (options.session) {
-    const Session& session = *options.session;
+    Session& session = *options.session;
+    const HandModel& hand = *session.job().setup().hand;
     problem.X_WB = session.world().GetPoses(session.GetStart());
     result = IkSolver(hand, session.scene()).Solve(config, problem, rng);
   } else {
-    result = IkSolver(hand).Solve(config, problem, rng);
+    result = IkSolver(*JobSetup().hand).Solve(config, problem, rng);
   }
   PushIk(L, result);
   return {1};

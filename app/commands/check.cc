@@ -12,6 +12,7 @@
 #include "app/core/data_folder.h"
 #include "app/core/text.h"
 #include "app/core/thread_pool.h"
+#include "app/job/job.h"
 #include "app/job/start_verdict.h"
 #include "bindings/scene_file.h"
 
@@ -47,8 +48,8 @@ int Check(const CheckOptions& options) {
   if (errors > 0) return 2;
   if (!options.no_grasps) {
     ThreadPool pool;
-    const StartCertificate start =
-        FindSceneVerdict(scene, options.seed, DataFolder() / "assets" / "weights", pool);
+    const StartCertificate start = FindSceneVerdict(scene, *JobSetup().hand, options.seed,
+                                                    DataFolder() / "assets" / "weights", pool);
     const bool graspable = start.verdict == StartVerdict::kGraspable;
     warnings += graspable;
     fmt::print("{}: {}{}\n", scene.object().where, graspable ? "warning: " : "",

@@ -17,6 +17,7 @@ struct JobSetup {
   std::uint64_t seed = 1;
   PlannerConfig config;           ///< at the start; commands may change it
   std::filesystem::path weights;  ///< the folder with score.safetensors and generator.safetensors
+  const HandModel* hand = &ShadowHand();  ///< outlives the job
 };
 
 /// What all commands of one job share: the world, built at once; the planner and what it loads,

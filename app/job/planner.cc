@@ -97,8 +97,9 @@ double GraspSet::r_suc_raw() const {
   return generated == 0 ? 0.0 : static_cast<double>(raw) / generated;
 }
 
-Planner::Planner(std::shared_ptr<const World> world, WorldState start, const PlannerConfig& config,
-                 std::uint64_t seed, ThreadPool& pool, const std::filesystem::path& weights)
+Planner::Planner(std::shared_ptr<const World> world, const HandModel& hand, WorldState start,
+                 const PlannerConfig& config, std::uint64_t seed, ThreadPool& pool,
+                 const std::filesystem::path& weights)
     : world_(std::move(world)),
       start_(std::move(start)),
       config_(config),
@@ -121,7 +122,7 @@ Planner::Planner(std::shared_ptr<const World> world, WorldState start, const Pla
       std::make_shared<LearnedScorer>(*score_, scene(), std::move(cloud), *environment_, pool_);
   scorer->SetProbes(FindProbes(scene().object().shape, config.mesh, *shape_, *scorer, seed));
   scorer_ = scorer;
-  grasp_world_ = std::make_shared<const GraspWorld>(scene(), ShadowHand());
+  grasp_world_ = std::make_shared<const GraspWorld>(scene(), hand);
   room_ = std::make_shared<const GraspRoom>(*grasp_world_, GraspRoomConfig{}, seed);
 }
 

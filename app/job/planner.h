@@ -98,12 +98,14 @@ struct GraspSet {
 /// inputs. No mathematics of its own. Immutable after construction; a copy shares what was built.
 class Planner {
  public:
+  /// @param hand     outlives this.
   /// @param start    of every plan, fingers off.
   /// @param pool     for what runs in parallel; outlives this.
   /// @param weights  the folder with score.safetensors and generator.safetensors.
   /// @throws InputError for a bad configuration, or weights that are missing or damaged.
-  Planner(std::shared_ptr<const World> world, WorldState start, const PlannerConfig& config,
-          std::uint64_t seed, ThreadPool& pool, const std::filesystem::path& weights);
+  Planner(std::shared_ptr<const World> world, const HandModel& hand, WorldState start,
+          const PlannerConfig& config, std::uint64_t seed, ThreadPool& pool,
+          const std::filesystem::path& weights);
   ~Planner();
 
   /// The same with other settings. @throws InputError for bad ones, or a cloud of another size,

@@ -25,7 +25,7 @@ std::string HashWeights(const std::filesystem::path& weights) {
 
 }  // namespace
 
-StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed,
+StartCertificate FindSceneVerdict(const Scene& scene, const HandModel& hand, std::uint64_t seed,
                                   const std::filesystem::path& weights, ThreadPool& pool) {
   StartCertificateConfig config;
   config.seed = seed;
@@ -33,9 +33,10 @@ StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed,
   proposer.key = HashWeights(weights);
   proposer.propose = [&] {
     const auto world = std::make_shared<const World>(scene);
-    return ProposeAtStart({world, world->InitialState(), PlannerConfig(), seed, pool, weights});
+    return ProposeAtStart(
+        {world, hand, world->InitialState(), PlannerConfig(), seed, pool, weights});
   };
-  const GraspWorld world(scene, ShadowHand());
+  const GraspWorld world(scene, hand);
   return FindStartVerdict(world, config, proposer, {DefaultVerdictFolder()}, pool);
 }
 

@@ -14,7 +14,7 @@ namespace pregrasp {
 /// @param scene    loaded.
 /// @param weights  the folder of the networks' weights; read only where there is no proof.
 /// @throws InputError for weights that are missing or damaged where they are needed.
-StartCertificate FindSceneVerdict(const Scene& scene, std::uint64_t seed,
+StartCertificate FindSceneVerdict(const Scene& scene, const HandModel& hand, std::uint64_t seed,
                                   const std::filesystem::path& weights, ThreadPool& pool);
 
 /// One sentence with the numbers that decided.
