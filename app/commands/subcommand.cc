@@ -79,13 +79,13 @@ Option Subcommand::AddSeed(std::uint64_t& seed, const std::string& text) const {
 Option Subcommand::AddSeed(const std::string& name, std::uint64_t& seed,
                            const std::string& text) const {
   const CLI::Validator digits(
-      [](const std::string& text) {
+      [](const std::string& given) {
         std::uint64_t value = 0;
-        const char* end = text.data() + text.size();
-        const auto [rest, error] = std::from_chars(text.data(), end, value);
+        const char* end = given.data() + given.size();
+        const auto [rest, error] = std::from_chars(given.data(), end, value);
         const bool fits = error == std::errc() && rest == end;
         return fits ? std::string()
-                    : "expected a whole number from 0 to 2^64 - 1, got \"" + text + '"';
+                    : "expected a whole number from 0 to 2^64 - 1, got \"" + given + '"';
       },
       "N", "seed");
   return Option(*app_->add_option(name, seed, text)->capture_default_str()->check(digits));

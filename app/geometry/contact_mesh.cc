@@ -96,9 +96,9 @@ class ConvexRebuild {
           n.squaredNorm();
     }
     int opposite = 0;
-    constexpr double kOnEdge = 0.02;  // barycentric; nearer to an edge a sliver would result
+    constexpr double kNearEdge = 0.02;  // barycentric; nearer to an edge a sliver would result
     const double smallest = weight.minCoeff(&opposite);
-    if (smallest > kOnEdge) {
+    if (smallest > kNearEdge) {
       SplitFace(f, nearest.p_B);
       return;
     }
@@ -106,7 +106,7 @@ class ConvexRebuild {
     const Vector3 edge = corner[b] - corner[a];
     double s = edge.dot(nearest.p_B - corner[a]) / edge.squaredNorm();
     // A point in a corner would double it: it goes to the edge's middle instead.
-    if (s < kOnEdge || s > 1.0 - kOnEdge) s = 0.5;
+    if (s < kNearEdge || s > 1.0 - kNearEdge) s = 0.5;
     SplitEdge(f, a, corner[a] + s * edge);
   }
 

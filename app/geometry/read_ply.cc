@@ -97,12 +97,12 @@ PlyHeader ParseHeader(std::string_view& rest) {
     if (key == "end_header") break;
     if (key == "format") {
       const std::string_view format = NextWord(line);
-      static const std::map<std::string_view, Encoding> kFormats = {
+      static const std::map<std::string_view, Encoding> kEncodings = {
           {"ascii", Encoding::kAscii},
           {"binary_little_endian", Encoding::kLittle},
           {"binary_big_endian", Encoding::kBig}};
-      const auto it = kFormats.find(format);
-      if (it == kFormats.end()) Fail(fmt::format("has the unknown format \"{}\"", format));
+      const auto it = kEncodings.find(format);
+      if (it == kEncodings.end()) Fail(fmt::format("has the unknown format \"{}\"", format));
       header.encoding = it->second;
       has_format = true;
     } else if (key == "element") {

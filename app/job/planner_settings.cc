@@ -128,7 +128,7 @@ bool PlannerSetting::is_number() const { return std::holds_alternative<double>(D
 
 std::vector<std::string> PlannerSetting::choices() const {
   PlannerConfig config;
-  return VisitField(*this, config, [](const auto& field) { return WordsOf(field); });
+  return VisitField(*this, config, [](const auto& value) { return WordsOf(value); });
 }
 
 std::string PlannerSetting::Values() const {

@@ -96,9 +96,9 @@ std::string Describe(const EvalConfig& config, std::int64_t items) {
                                {"poses", DescribePoses(ladder)}});
   }
   if (setup.objects) {
-    ItemConfig items;
-    items.objects = setup.objects;
-    json["objects"] = Json::parse(items.ToJson()).at("objects");
+    ItemConfig given;
+    given.objects = setup.objects;
+    json["objects"] = Json::parse(given.ToJson()).at("objects");
   }
   json["settings"] = PlannerSettings(setup.planner);
   return FormatJson(json);

@@ -53,7 +53,7 @@ TEST_P(BadSceneTest, IsOneLineAndExitCode2AndLeavesNothingBehind) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, BadSceneTest, testing::ValuesIn(BadSceneNames()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& scene) { return scene.param; });
 
 TEST(BadFileTest, WhatIsNoLuaFileIsOneLine) {
   const TestFolder folder;

@@ -100,9 +100,9 @@ TEST(ContactGraphTest, NoNodeIsCalledKeptOrPrunedBeforeThePruningHasDecidedOnIt)
   using Verdict = NodeReason::Verdict;
   ContactGraph graph = MakeScored(10.0);
   const auto count = [&](Verdict verdict) {
-    int count = 0;
-    for (const ContactNode& node : graph.nodes()) count += graph.Why(node.id).verdict == verdict;
-    return count;
+    int found = 0;
+    for (const ContactNode& node : graph.nodes()) found += graph.Why(node.id).verdict == verdict;
+    return found;
   };
   EXPECT_EQ(count(Verdict::kScored), 144);
   graph.PruneStep(4);  // of the 15 best by s_c

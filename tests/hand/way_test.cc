@@ -34,9 +34,9 @@ class WayTest : public ::testing::Test {
   double SampleLeast(const HandWay& way) const {
     const HandObstacles obstacles({&ball_, &plate_});
     double least = 1.0;
-    constexpr int kSamples = 400;
-    for (int i = 0; i <= kSamples; ++i) {
-      const double s = static_cast<double>(i) / kSamples;
+    constexpr int kPoints = 400;
+    for (int i = 0; i <= kPoints; ++i) {
+      const double s = static_cast<double>(i) / kPoints;
       const HandConfiguration at = Advance(way.from, HandVector(s * CalcStep(way.from, way.to)));
       HandPose pose;
       CalcHandPose(ShadowHand(), at.X_WH, at.q, &pose);

@@ -260,7 +260,9 @@ TEST(MotionlessPlanTest, FailsWhereTheRulerLiesAndTheSamePlannerGraspsItOverTheE
     EXPECT_EQ(end.generated, 20) << overhang;
     EXPECT_EQ(end.feasible > 0, overhang > 0.0) << end.feasible;
     // What the generator is asked to complete has been tried: most of the samples are feasible.
-    if (overhang > 0.0) EXPECT_GE(end.feasible, 14);
+    if (overhang > 0.0) {
+      EXPECT_GE(end.feasible, 14);
+    }
     EXPECT_EQ(end.searched, overhang > 0.0) << overhang;
   }
 }
