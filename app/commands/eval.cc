@@ -130,7 +130,15 @@ EvalConfig MakeConfig(const EvalOptions& options) {
   if (options.keep_runs) setup.runs = options.out / "runs";
   std::vector<Setting> settings;
   for (const std::string& setting : options.settings) settings.push_back(ParseSetting(setting));
-  if (FindStudy(options.study).of_ladders) {
+  const StudySubject subject = FindStudy(options.study).subject;
+  if (subject == StudySubject::kMade) {
+    if (options.scenes != "all") {
+      throw InputError("--scenes", "", "none, as the study makes its own problems",
+                       '"' + options.scenes + '"');
+    }
+    ApplyPlannerSettings(setup.planner, settings);
+    RequireNoSettingsLeft(settings, PlannerRoots());
+  } else if (subject == StudySubject::kLadders) {
     setup.ladders = LoadAll<Ladder>(FindFiles(options.scenes, DataFolder() / "tests" / "ladders"),
                                     settings, setup.planner, LoadLadderFile);
   } else {

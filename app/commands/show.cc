@@ -3,6 +3,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/commands/commands.h"
@@ -10,6 +11,7 @@
 #include "app/core/json_text.h"
 #include "app/recording/checked_file.h"
 #include "app/recording/loaded_run.h"
+#include "app/session/motion_film.h"
 #include "app/session/picture_file.h"
 
 namespace pregrasp {
@@ -46,7 +48,22 @@ void SetSize(const std::string& size, PictureConfig& config) {
   config.height = height;
 }
 
+// The whole hand motion, of which no step and nothing about pictures can be asked.
+int ShowMotion(const ShowOptions& options) {
+  for (const auto& [flag, given] : {std::pair("--step", !options.step.empty()),
+                                    std::pair("--overlay", !options.overlay.empty()),
+                                    std::pair("--size", !options.size.empty())}) {
+    if (given) throw InputError(flag, "", "a picture, --out FILE.png", options.out);
+  }
+  WriteMotionFilm(LoadRun(options.run), options.out);
+  return 0;
+}
+
 int Show(const ShowOptions& options) {
+  if (std::filesystem::path(options.out).extension() == ".glb") return ShowMotion(options);
+  if (options.step.empty()) {
+    throw InputError("--step", "", "a step's id, as in steps.jsonl: path.1.mppi.5", "nothing");
+  }
   const LoadedRun run = LoadRun(options.run);
   const StepFacts& step = run.Get(options.step);
   Shot shot = FindShot(run, options.step);
@@ -56,7 +73,11 @@ int Show(const ShowOptions& options) {
   PictureDrawer drawer(run.scene,
                        {run.summary.seed, run.manifest.value("scene_file", run.scene.name),
                         run.manifest.value("command", "")});
-  drawer.Draw(step, run, shot, options.out);
+  if (std::filesystem::path(options.out).extension() == ".3Dscene") {
+    drawer.WriteScene(step, run, shot, options.out);
+  } else {
+    drawer.Draw(step, run, shot, options.out);
+  }
   return 0;
 }
 
@@ -65,11 +86,18 @@ int Show(const ShowOptions& options) {
 void AddShow(const Subcommand& app, Action& action) {
   auto options = std::make_shared<ShowOptions>();
   const Subcommand command =
-      app.AddCommand("show", "Draw a step of a finished run, without planning again");
+      app.AddCommand("show",
+                     "Draw a step of a finished run, or write its hand motion as an animation, "
+                     "without planning again");
   command.Add("RUN_DIR", options->run, "The run directory").Required();
-  command.Add("--step", options->step, "The step's id, as in steps.jsonl: path.1.mppi.5")
+  command.Add("--step", options->step,
+              "Of a picture: the step's id, as in steps.jsonl: path.1.mppi.5");
+  command
+      .Add("--out", options->out,
+           "FILE.png, a picture of the step; FILE.3Dscene, the same for MRPT's SceneViewer3D; "
+           "FILE.glb, the scene and the hand's motion as "
+           "binary glTF, for modelling programs and web viewers")
       .Required();
-  command.Add("--out", options->out, "The PNG file").Required();
   command.Add("--size", options->size, "WIDTHxHEIGHT in pixels; as the run took it by default");
   command
       .Add("--overlay", options->overlay,

@@ -58,6 +58,8 @@ enum class RngStream : std::uint8_t {
   kMotionFrame,
   kMotionDetour,
   kMotionPolish,
+  kMotionProblem,
+  kMotionProblemIk,
 };
 
 /// Counter-based generator: Philox4x64-10 (Salmon et al., "Parallel random numbers: as easy as 1,

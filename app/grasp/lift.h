@@ -20,6 +20,9 @@ struct LiftResult : LiftOutcome {
   std::optional<GraspForces> forces;
   bool simulated = false;  ///< otherwise the outcome is that of no step
 
+  /// Whether the forearm behind the hand is clear of all bodies (Forearm), at the grasp and at the
+  /// end of the lift.
+  bool forearm_free = false;
   /// Of the six pushes of half the object's weight along +-x, +-y, +-z of the object for 0.3 s,
   /// those that it withstands: half a second later it is within 1 cm and 15 degrees of where it
   /// was, and fingers alone hold it. 0 unless held.

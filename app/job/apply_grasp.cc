@@ -91,6 +91,7 @@ LiftFacts MakeLiftFacts(const Application& a, int number, const LiftResult& lift
   facts.slip_mm = 1e3 * lift.slip;
   facts.direction_W = lift.way.direction_W;
   facts.pushes = lift.pushes;
+  facts.forearm_free = lift.forearm_free;
   facts.soft = lift.soft;
   facts.stiff = lift.stiff;
   facts.not_converged = lift.not_converged;

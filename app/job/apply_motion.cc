@@ -120,6 +120,7 @@ void SetMotionFacts(Application& a) {
   facts.min_clearance_mm = 1e3 * summary.min_clearance;
   facts.blocked_ways = summary.blocked_ways;
   facts.seconds = a.next.motion_state->task->frames.back().t;
+  facts.forearm_free = IsForearmFree(a.next.planner->forearm(), *a.next.motion_state);
   facts.over_limits = summary.over_limits;
   facts.rates = MakeRatesFacts("whole", summary.rates);
   for (int phase = 0; phase < kNumMotionPhases; ++phase) {

@@ -148,6 +148,7 @@ CertifyFacts MakeCertifyFacts(const JobState& state, const Scene& scene, int pla
   for (const CertifyReason reason : certificate.reasons) {
     facts.reasons.emplace_back(CertifyReasonText(reason));
   }
+  facts.slow = state.config.certify.slow;
   facts.hold_seconds = state.config.certify.hold_seconds;
   facts.hold_shift_mm = 1e3 * certificate.hold_shift;
   facts.hold_turn_deg = certificate.hold_turn_deg;

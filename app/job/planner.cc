@@ -123,6 +123,7 @@ Planner::Planner(std::shared_ptr<const World> world, const HandModel& hand, Worl
   scorer->SetProbes(FindProbes(scene().object().shape, config.mesh, *shape_, *scorer, seed));
   scorer_ = scorer;
   grasp_world_ = std::make_shared<const GraspWorld>(scene(), hand);
+  forearm_ = std::make_shared<const Forearm>(scene());
   room_ = std::make_shared<const GraspRoom>(*grasp_world_, GraspRoomConfig{}, seed);
 }
 
@@ -249,10 +250,23 @@ std::vector<std::optional<LiftResult>> Planner::LiftGrasps(const Certificate& ce
   pool_.ParallelFor(static_cast<int>(grasps.feasible.size()), [&](int i, int) {
     ThrowIfInterrupted();
     const int sample = grasps.feasible[i];
-    lifts[sample] = LiftGrasp({*world_, *half_world_, *grasp_world_}, end,
-                              grasps.grasps[sample].result, way, config_.lift);
+    const GraspResult& grasp = grasps.grasps[sample].result;
+    LiftResult lift =
+        LiftGrasp({*world_, *half_world_, *grasp_world_}, end, grasp, way, config_.lift);
+    lift.forearm_free = IsForearmFree(end, grasp, lift);
+    lifts[sample] = std::move(lift);
   });
   return lifts;
+}
+
+bool Planner::IsForearmFree(const WorldState& end, const GraspResult& grasp,
+                            const LiftResult& lift) const {
+  const std::vector<RigidTransform> X_WB = world_->GetPoses(end);
+  const RigidTransform& X_WH = grasp.kinematics->ik.X_WH;
+  if (!forearm_->IsFree(X_WB, X_WH)) return false;
+  if (lift.trace.empty()) return true;
+  const std::vector<RigidTransform> X_WB_lifted = world_->GetPoses(lift.trace.back().state);
+  return forearm_->IsFree(X_WB_lifted, X_WB_lifted.front() * X_WB.front().inverse() * X_WH);
 }
 
 HandMotion Planner::MakeMotion(const Certificate& certificate, const GraspResult& grasp,

@@ -123,6 +123,7 @@ class Planner {
   const LearnedScorer& scorer() const { return *scorer_; }
   const GraspRoom& room() const { return *room_; }
   const GraspWorld& grasp_world() const { return *grasp_world_; }
+  const Forearm& forearm() const { return *forearm_; }
 
   /// The contact mesh as an unscored graph.
   ContactGraph BuildGraph(const ContactMeshConfig& mesh, const ContactGraphConfig& graph) const;
@@ -173,6 +174,8 @@ class Planner {
                                           const std::vector<HandConfiguration>& known,
                                           int path_rank) const;
   GraspRequest MakeRequest(const Placement& condition, int path_rank, int number) const;
+  // LiftResult::forearm_free, of a lift from `end`.
+  bool IsForearmFree(const WorldState& end, const GraspResult& grasp, const LiftResult& lift) const;
 
   std::shared_ptr<const World> world_;
   WorldState start_;
@@ -187,6 +190,7 @@ class Planner {
   std::shared_ptr<const LearnedScorer> scorer_;
   std::shared_ptr<const CloudStructure> generator_structure_;
   std::shared_ptr<const GraspWorld> grasp_world_;
+  std::shared_ptr<const Forearm> forearm_;
   std::shared_ptr<const GraspRoom> room_;  // refers to grasp_world_
 };
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "app/core/interrupt.h"
@@ -125,6 +127,7 @@ class Runner {
 
   // A plan of a path: its certificate, and the last step of its grasps and lifts, if it has any.
   struct TriedPlan {
+    int plan = 1;  // its number
     const Node* certified = nullptr;
     const Node* end = nullptr;
     std::vector<int> lifting = {};  // the most promising grasp first, by number
@@ -142,6 +145,14 @@ class Runner {
            std::tuple(b.reached, b.lifted, y.worlds_held(), b.feasible);
   }
 
+  // What hand motions to the grasps of some plans came to.
+  struct TriedMotions {
+    const Node* best = nullptr;
+    bool done = false;  // without failure and within the hand's limits
+    // The factor by which the slowest motion is too fast for the hand; unset where none was filled.
+    std::optional<double> haste = {};
+  };
+
   const Node& Try(const Node& path, int number) {
     const std::string name = fmt::format("path {} of {}", number, config_.paths);
     const Node& optimised = Optimise(path, name);
@@ -149,36 +160,76 @@ class Runner {
     std::vector<TriedPlan> plans;
     int certified = 0;
     for (int plan = 1; plan <= count && certified < config_.plans; ++plan) {
-      plans.push_back(TryPlan(optimised, plan, name));
+      plans.push_back(TryPlan(optimised, plan, {}, name));
       certified += plans.back().end->progress.reached >= Progress::Reached::kCertified ? 1 : 0;
     }
     std::stable_sort(plans.begin(), plans.end(), PromisesMore);
-    const Node* best = plans.front().end;
+    TriedMotions motions = MoveHands(plans, name);
+    if (!motions.done && motions.haste.value_or(1.0) > 1.0) {
+      const Node* const best = motions.best;
+      plans = SlowDown(optimised, plans, *motions.haste, name);
+      motions = MoveHands(plans, name);
+      if (!motions.done && !(best->progress < motions.best->progress)) motions.best = best;
+    }
+    const bool ok = motions.best->progress.reached == Progress::Reached::kOk;
+    return ok ? ShowFrames(timeline_, *motions.best) : *motions.best;
+  }
+
+  // The best plans with a grasp that lifts, as much slower as the hand needs: certified, completed
+  // and lifted once more.
+  std::vector<TriedPlan> SlowDown(const Node& optimised, const std::vector<TriedPlan>& plans,
+                                  double haste, const std::string& name) {
+    constexpr std::size_t kSlowed = 2;
+    constexpr double kMostHaste = 4.0, kRoom = 1.1;
+    const nlohmann::json settings = {
+        {"certify.slow", std::ceil(10.0 * kRoom * std::min(haste, kMostHaste)) / 10.0}};
+    std::vector<TriedPlan> slowed;
+    for (const TriedPlan& plan : plans) {
+      if (plan.lifting.empty() || slowed.size() == kSlowed) continue;
+      slowed.push_back(TryPlan(optimised, plan.plan, {{"settings", settings}}, name));
+    }
+    std::stable_sort(slowed.begin(), slowed.end(), PromisesMore);
+    return slowed;
+  }
+
+  // What keeps the hand from one grasp often keeps it from the next: plans take turns.
+  TriedMotions MoveHands(const std::vector<TriedPlan>& plans, const std::string& name) {
+    TriedMotions tried;
+    tried.best = plans.front().end;
     int motions = 0;
-    // What keeps the hand from one grasp often keeps it from the next: plans take turns.
     for (std::size_t turn = 0; turn < static_cast<std::size_t>(config_.motions); ++turn) {
       for (const TriedPlan& plan : plans) {
         if (turn >= plan.lifting.size() || motions == config_.motions) continue;
         Report(name + ", hand motion", motions++, config_.motions);
         const Node& moved = MoveHand(*plan.end, plan.lifting[turn]);
-        if (best == plan.end || best->progress < moved.progress) best = &moved;
-        if (moved.progress.reached == Progress::Reached::kOk) return ShowFrames(timeline_, moved);
+        if (tried.best == plan.end || tried.best->progress < moved.progress) tried.best = &moved;
+        const auto* facts = std::get_if<MotionFacts>(&moved.facts.details);
+        if (facts == nullptr) continue;
+        const double haste =
+            std::max(facts->rates.speed_share, std::sqrt(facts->rates.acceleration_share));
+        tried.haste = std::min(haste, tried.haste.value_or(haste));
+        if (moved.progress.reached == Progress::Reached::kOk && facts->over_limits == 0) {
+          tried.best = &moved;
+          tried.done = true;
+          return tried;
+        }
       }
     }
-    return *best;
+    return tried;
   }
 
-  TriedPlan TryPlan(const Node& optimised, int plan, const std::string& name) {
-    nlohmann::json options = nlohmann::json::object();
+  TriedPlan TryPlan(const Node& optimised, int plan, nlohmann::json options,
+                    const std::string& name) {
+    if (options.is_null()) options = nlohmann::json::object();
     if (plan > 1) options["plan"] = plan;
     Report(name + ", plans and their grasps", plan - 1, kMostPlans);
     const Node& certified = timeline_.Do(optimised, Verb::kCertify, options);
     if (!std::get<CertifyFacts>(certified.facts.details).certified ||
         timeline_.GetState(certified)->release->conditions.empty()) {
-      return {&certified, &certified};
+      return {plan, &certified, &certified};
     }
     const Node& end = CompleteGrasps(timeline_, certified, nlohmann::json::object());
-    TriedPlan tried{&certified, &end};
+    TriedPlan tried{plan, &certified, &end};
     const auto state = timeline_.GetState(end);
     for (const int number : OrderGrasps(*state)) {
       if (state->lifts.at(number)->held) tried.lifting.push_back(number);
@@ -331,6 +382,7 @@ std::vector<int> OrderGrasps(const JobState& state) {
     const CompletedGrasp &grasp_a = state.grasps->grasps[a - 1],
                          &grasp_b = state.grasps->grasps[b - 1];
     if (grasp_a.source != grasp_b.source) return grasp_a.source == GraspSource::kGenerator;
+    if (lift_a.forearm_free != lift_b.forearm_free) return lift_a.forearm_free;
     return grasp_a.result.wrench->margin > grasp_b.result.wrench->margin;
   });
   return order;

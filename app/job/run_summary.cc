@@ -157,6 +157,7 @@ void FillMotion(const JobState& state, RunSummary& summary) {
   summary.motion.min_clearance_mm = 1e3 * facts.min_clearance;
   summary.motion.max_joint_speed = facts.rates.joint_speed;
   summary.motion.max_wrist_speed = facts.rates.wrist_speed;
+  summary.motion.forearm_free = IsForearmFree(state.planner->forearm(), *state.motion_state);
   summary.motion.order = KeyframeOrderName(state.motion->config().order);
 }
 

@@ -460,6 +460,7 @@ struct CertifyFacts {
   int plan = 1;  ///< which of the path's plans, the best first
   bool certified = false;
   std::vector<std::string> reasons;
+  double slow = 1.0;  ///< times as long as planned
   double hold_seconds = 0.0;
   double hold_shift_mm = 0.0, hold_turn_deg = 0.0;
   double step_shift_mm = 0.0, step_turn_deg = 0.0;  ///< at half the time step, elsewhere by
@@ -483,6 +484,7 @@ struct CertifyFacts {
     visit("plan", self.plan);
     visit("certified", self.certified);
     visit("reasons", self.reasons);
+    visit("slow", self.slow);
     visit("hold_seconds", self.hold_seconds);
     visit("hold_shift_mm", self.hold_shift_mm);
     visit("hold_turn_deg", self.hold_turn_deg);
@@ -572,6 +574,7 @@ struct LiftFacts {
   Vector3 direction_W = Vector3::UnitZ();
   int pushes = 0;  ///< of six, withstood
   bool soft = false, stiff = false;
+  bool forearm_free = false;            ///< at the grasp and at the end
   int not_converged = 0;                ///< physics steps that the contact solver left unfinished
   double unresolved_mm = 0.0;           ///< the overlap that these may have left, summed
   std::vector<GraspContactFacts> grip;  ///< with the forces it holds by
@@ -594,6 +597,7 @@ struct LiftFacts {
     visit("pushes", self.pushes);
     visit("soft", self.soft);
     visit("stiff", self.stiff);
+    visit("forearm_free", self.forearm_free);
     visit("not_converged", self.not_converged);
     visit("unresolved_mm", self.unresolved_mm);
     visit("grip", self.grip);
@@ -667,7 +671,8 @@ struct MotionFacts {
   int blocked_ways = 0;  ///< of the failed frames, those that the way to goes through something
   double seconds = 0.0;  ///< of the animation
   double max_tip_error_mm = 0.0, min_clearance_mm = 0.0;
-  int over_limits = 0;  ///< frames at which the hand exceeds a limit of speed or acceleration
+  bool forearm_free = false;  ///< of all bodies, in every frame
+  int over_limits = 0;        ///< frames at which the hand exceeds a limit of speed or acceleration
   RatesFacts rates;
   std::vector<RatesFacts> phases;
   std::vector<std::string> ways;  ///< of the free parts, in time: how each was found
@@ -684,6 +689,7 @@ struct MotionFacts {
     visit("seconds", self.seconds);
     visit("max_tip_error_mm", self.max_tip_error_mm);
     visit("min_clearance_mm", self.min_clearance_mm);
+    visit("forearm_free", self.forearm_free);
     visit("over_limits", self.over_limits);
     visit("rates", self.rates);
     visit("phases", self.phases);

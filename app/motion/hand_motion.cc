@@ -394,6 +394,14 @@ void HandMotion::Finish(MotionState& state) const {
   if (!state.finished) Smooth(state);
 }
 
+bool IsForearmFree(const Forearm& forearm, const MotionState& state) {
+  for (std::size_t i = 0; i < state.frames.size(); ++i) {
+    const RigidTransform& X_WH = state.frames[i].configuration.X_WH;
+    if (!forearm.IsFree(state.task->frames[i].X_WB, X_WH)) return false;
+  }
+  return true;
+}
+
 MotionSummary HandMotion::Summarize(const MotionState& state) const {
   MotionSummary summary;
   summary.frames = static_cast<int>(state.frames.size());

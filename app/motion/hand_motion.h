@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/hand/forearm.h"
 #include "app/motion/detour.h"
 #include "app/motion/hand_limits.h"
 #include "app/motion/motion_task.h"
@@ -81,6 +82,9 @@ struct MotionState {
   /// hand has all the time for is blocked.
   bool is_hopeless() const;
 };
+
+/// Of a filled motion: whether the forearm behind the hand is clear of all bodies in every frame.
+bool IsForearmFree(const Forearm& forearm, const MotionState& state);
 
 std::vector<HandConfiguration> ConfigurationsOf(const std::vector<MotionFrame>& frames);
 

@@ -16,4 +16,23 @@ void AppendCells(std::string& row, const RigidTransform& X);  ///< x, y, z; w >=
 void AppendVectorNames(std::string& row, const std::string& stem);
 void AppendQuaternionNames(std::string& row, const std::string& stem);
 
+/// The cells of one row, in turn. @throws InputError (all but the constructor) with `where`.
+class CellReader {
+ public:
+  /// Both outlive this.
+  CellReader(const std::string& where, const std::string& row) : where_(where), row_(row) {}
+
+  std::string NextWord(const char* expected);
+  double NextNumber();        ///< finite
+  int NextChoice(int most);   ///< a whole number from 0
+  Vector3 NextVector();       ///< x, y, z
+  RigidTransform NextPose();  ///< x, y, z; a unit quaternion w, x, y, z
+  void ExpectEnd() const;
+
+ private:
+  const std::string& where_;
+  const std::string& row_;
+  std::size_t at_ = 0;
+};
+
 }  // namespace pregrasp::internal

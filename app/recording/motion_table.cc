@@ -1,8 +1,5 @@
 #include "app/recording/motion_table.h"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <sstream>
 
 #include "app/core/error.h"
@@ -21,87 +18,29 @@ void AppendPoseNames(std::string& out, const std::string& frame) {
   internal::AppendQuaternionNames(out, "q_W" + frame);
 }
 
-// The fields of one line, in turn.
-class FieldReader {
- public:
-  FieldReader(std::string where, const std::string& line) : where_(std::move(where)), line_(line) {}
-
-  std::string NextWord(const char* expected) {
-    if (!(at_ <= line_.size())) throw InputError(where_, "", expected, "the end of the line");
-    const std::size_t end = std::min(line_.find(',', at_), line_.size());
-    const std::string word = line_.substr(at_, end - at_);
-    at_ = end + 1;
-    return word;
-  }
-
-  double NextNumber() {
-    const std::string word = NextWord("a number");
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
-      throw InputError(where_, "", "a finite number", word);
+MotionPhase ReadPhase(const std::string& where, const std::string& word) {
+  for (int phase = 0; phase < kNumMotionPhases; ++phase) {
+    if (word == MotionPhaseName(static_cast<MotionPhase>(phase))) {
+      return static_cast<MotionPhase>(phase);
     }
-    return value;
   }
-
-  // A whole number from 0 to `most`.
-  int NextChoice(int most) {
-    const double value = NextNumber();
-    const auto choice = static_cast<int>(value);
-    if (!(value >= 0.0 && value <= most && value == choice)) {
-      throw InputError(where_, "", "a whole number from 0 to " + std::to_string(most),
-                       FormatDouble(value));
-    }
-    return choice;
-  }
-
-  RigidTransform NextPose() {
-    Vector3 p_WF;
-    for (int i = 0; i < 3; ++i) p_WF[i] = NextNumber();
-    double wxyz[4];
-    for (double& value : wxyz) value = NextNumber();
-    const Quaternion q_WF(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-    constexpr double kUnit = 1e-6;  // far above what writing a rotation as text loses
-    if (!(std::abs(q_WF.norm() - 1.0) <= kUnit)) {
-      throw InputError(where_, "", "a unit quaternion", FormatDouble(q_WF.norm()));
-    }
-    return MakeTransform(q_WF.normalized(), p_WF);
-  }
-
-  MotionPhase NextPhase() {
-    const std::string word = NextWord("a phase");
-    for (int phase = 0; phase < kNumMotionPhases; ++phase) {
-      if (word == MotionPhaseName(static_cast<MotionPhase>(phase))) {
-        return static_cast<MotionPhase>(phase);
-      }
-    }
-    throw InputError(where_, "phase", "approach, contact, transit, closing or lift", word);
-  }
-
-  void ExpectEnd() const {
-    if (at_ <= line_.size()) throw InputError(where_, "", "no more fields", line_.substr(at_));
-  }
-
- private:
-  std::string where_;
-  const std::string& line_;
-  std::size_t at_ = 0;
-};
+  throw InputError(where, "phase", "approach, contact, transit, closing or lift", word);
+}
 
 MotionRecord ReadRow(const std::string& where, const std::string& line) {
-  FieldReader fields(where, line);
+  internal::CellReader cells(where, line);
   MotionRecord record;
-  record.t = fields.NextNumber();
-  record.X_WO = fields.NextPose();
-  record.hand.X_WH = fields.NextPose();
-  for (int j = 0; j < kNumHandJoints; ++j) record.hand.q[j] = fields.NextNumber();
-  for (bool& on : record.on) on = fields.NextChoice(1) == 1;
-  record.phase = fields.NextPhase();
-  record.clearance_mm = fields.NextNumber();
-  record.tip_error_mm = fields.NextNumber();
-  record.rung = static_cast<LooseningRung>(fields.NextChoice(kNumLooseningRungs - 1));
-  record.simulated_t = fields.NextNumber();
-  fields.ExpectEnd();
+  record.t = cells.NextNumber();
+  record.X_WO = cells.NextPose();
+  record.hand.X_WH = cells.NextPose();
+  for (int j = 0; j < kNumHandJoints; ++j) record.hand.q[j] = cells.NextNumber();
+  for (bool& on : record.on) on = cells.NextChoice(1) == 1;
+  record.phase = ReadPhase(where, cells.NextWord("a phase"));
+  record.clearance_mm = cells.NextNumber();
+  record.tip_error_mm = cells.NextNumber();
+  record.rung = static_cast<LooseningRung>(cells.NextChoice(kNumLooseningRungs - 1));
+  record.simulated_t = cells.NextNumber();
+  cells.ExpectEnd();
   return record;
 }
 

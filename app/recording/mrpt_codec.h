@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/core/math.h"
+#include "app/recording/mrpt_scene.h"
 
 namespace pregrasp {
 
@@ -53,6 +54,8 @@ class MrptCodec {
   virtual std::string Encode(const LogFrame& frame) const = 0;
   /// All comments and frames. @throws std::exception of MRPT's where the bytes are none of its own.
   virtual std::vector<LogEntry> Decode(std::string_view bytes) const = 0;
+  /// A COpenGLScene.
+  virtual std::string EncodeScene(const MrptScene& scene) const = 0;
   /// The first difference of an entry's frame, but for the last bits of poses.
   virtual std::optional<LogDifference> Compare(const LogEntry& entry,
                                                const LogFrame& expected) const = 0;

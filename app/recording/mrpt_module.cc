@@ -10,6 +10,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include "app/recording/mrpt_codec.h"
+#include "app/recording/mrpt_scene_module.h"
 
 namespace pregrasp {
 namespace {
@@ -118,6 +119,8 @@ class Codec : public MrptCodec {
     // rawlog-edit takes a log of frames alone for one single object; pairs work everywhere.
     return BytesOf(mrpt::obs::CActionCollection()) + BytesOf(MakeFrame(frame));
   }
+
+  std::string EncodeScene(const MrptScene& scene) const override { return EncodeMrptScene(scene); }
 
   std::vector<LogEntry> Decode(std::string_view bytes) const override {
     mrpt::io::CMemoryStream stream;

@@ -1,6 +1,13 @@
 #include "app/recording/rollout_table.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "app/core/error.h"
 #include "app/core/text.h"
+#include "app/recording/checked_file.h"
 #include "app/recording/csv_cells.h"
 
 namespace pregrasp {
@@ -82,6 +89,31 @@ std::string LiftRow(const WorldState& state) {
     AppendCell(row, finger.damping);
   }
   return row + '\n';
+}
+
+std::vector<BodyRow> ReadBodyRows(const std::filesystem::path& file, const Scene& scene) {
+  std::istringstream lines(ReadFile(file));
+  std::string line;
+  std::getline(lines, line);
+  const std::string header = BodyHeader(scene);
+  if (line.substr(0, header.size()) != header) {
+    throw InputError(file.string() + ":1", "", "the header of such a table of this scene",
+                     OneLine(line));
+  }
+  const auto movables = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                      [](const Body& body) { return body.movable(); });
+  std::vector<BodyRow> rows;
+  for (int number = 2; std::getline(lines, line); ++number) {
+    const std::string where = fmt::format("{}:{}", file.string(), number);
+    internal::CellReader cells(where, line);
+    BodyRow row{cells.NextNumber(), {}};
+    for (std::ptrdiff_t i = 0; i < movables; ++i) {
+      row.X_WB.push_back(cells.NextPose());
+      for (int velocity = 0; velocity < 2; ++velocity) cells.NextVector();
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 }  // namespace pregrasp

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "app/dynamics/world.h"
 #include "app/scene/scene.h"
@@ -22,5 +24,15 @@ std::string RolloutRow(const WorldState& state);
 /// the z of the normal.
 std::string LiftHeader(const Scene& scene);
 std::string LiftRow(const WorldState& state);
+
+/// Where the movable bodies are at a row of either table.
+struct BodyRow {
+  double t = 0.0;                    ///< [s]
+  std::vector<RigidTransform> X_WB;  ///< the object first, in scene order
+};
+
+/// The bodies' columns of a rollout.csv or lift.csv. @throws InputError with the file, its line and
+/// what was expected.
+std::vector<BodyRow> ReadBodyRows(const std::filesystem::path& file, const Scene& scene);
 
 }  // namespace pregrasp

@@ -9,6 +9,8 @@
 #include "app/core/json_reader.h"
 #include "app/core/json_values.h"
 #include "app/pictures/words.h"
+#include "app/recording/mrpt_scene.h"
+#include "render/palette.h"
 
 namespace pregrasp {
 namespace {
@@ -141,13 +143,44 @@ PictureText PictureDrawer::Caption(const StepFacts& step, const FactsSource& ste
   return text;
 }
 
+RenderScene PictureDrawer::Compose(const StepFacts& step, const FactsSource& steps,
+                                   const Shot& shot) {
+  if (!maker_) maker_ = std::make_unique<PictureMaker>(scene_);
+  return maker_->Compose(step, steps, Caption(step, steps, shot), shot.config);
+}
+
 void PictureDrawer::Draw(const StepFacts& step, const FactsSource& steps, const Shot& shot,
                          const std::filesystem::path& file) {
-  if (!maker_) maker_ = std::make_unique<PictureMaker>(scene_);
-  const RenderScene picture = maker_->Compose(step, steps, Caption(step, steps, shot), shot.config);
-  WritePng(SharedRenderer().Render(picture,
+  WritePng(SharedRenderer().Render(Compose(step, steps, shot),
                                    {shot.config.width, shot.config.height, shot.config.quality}),
            file);
+}
+
+void PictureDrawer::WriteScene(const StepFacts& step, const FactsSource& steps, const Shot& shot,
+                               const std::filesystem::path& file) {
+  const RenderScene picture = Compose(step, steps, shot);
+  const auto color = [](const Rgba& c) { return MrptScene::Color{c.r, c.g, c.b, c.a}; };
+  MrptScene scene;
+  for (const RenderBody& body : picture.bodies) {
+    MrptScene::Mesh mesh{body.mesh, body.X_WB, color(body.color), {}};
+    for (const Rgba& face : body.face_colors) {
+      mesh.face_colors.push_back(color(WithAlpha(face, body.color.a)));
+    }
+    scene.meshes.push_back(std::move(mesh));
+  }
+  for (const RenderArrow& arrow : picture.arrows) {
+    scene.arrows.push_back({arrow.p_W, arrow.v_W, arrow.radius, color(arrow.color)});
+  }
+  for (const RenderPoint& point : picture.points) {
+    scene.balls.push_back({point.p_W, point.radius, color(point.color)});
+  }
+  for (const RenderLine& line : picture.lines) {
+    scene.lines.push_back({line.p_W, color(line.color)});
+  }
+  for (const RenderLabel& label : picture.labels) {
+    scene.labels.push_back({label.p_W, label.text, color(label.color)});
+  }
+  WriteMrptScene(file, scene);
 }
 
 }  // namespace pregrasp

@@ -52,7 +52,13 @@ class PictureDrawer {
   void Draw(const StepFacts& step, const FactsSource& steps, const Shot& shot,
             const std::filesystem::path& file);
 
+  /// Writes what the picture shows, but for its texts beside the scene, as a .3Dscene for MRPT's
+  /// SceneViewer3D, which looks at it from anywhere. @throws InputError likewise.
+  void WriteScene(const StepFacts& step, const FactsSource& steps, const Shot& shot,
+                  const std::filesystem::path& file);
+
  private:
+  RenderScene Compose(const StepFacts& step, const FactsSource& steps, const Shot& shot);
   PictureText Caption(const StepFacts& step, const FactsSource& steps, const Shot& shot) const;
 
   Scene scene_;

@@ -8,6 +8,7 @@
 #include "app/core/json_text.h"
 #include "app/job/fields_json.h"
 #include "app/studies/ladder_climb.h"
+#include "app/studies/read_items.h"
 #include "app/studies/table_text.h"
 
 namespace pregrasp {
@@ -34,14 +35,6 @@ class LadderItems : public Study {
   StudySetup setup_;
 };
 
-std::vector<LadderFacts> ReadFacts(const std::vector<nlohmann::json>& items) {
-  std::vector<LadderFacts> facts(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    fields::Read(JsonReader(items[i], fmt::format("item {}", i)), facts[i]);
-  }
-  return facts;
-}
-
 std::string ShareText(int part, int whole) {
   return whole == 0 ? "-" : fmt::format("{} of {}", part, whole);
 }
@@ -54,7 +47,7 @@ StudyFiles TabulateLadders(const std::vector<nlohmann::json>& items) {
                                                   "search: hold", "reach", "found", "lifted"}};
   std::vector<std::vector<std::string>> oracles = {{"ladder", "seed", "thumb / index", "progress",
                                                     "certified", "feasible", "lifted", "rollouts"}};
-  for (const LadderFacts& facts : ReadFacts(items)) {
+  for (const LadderFacts& facts : ReadItems<LadderFacts>(items)) {
     list.push_back(fields::Write(facts));
     const std::string seed = std::to_string(facts.seed);
     for (const PoseFacts& pose : facts.poses) {
@@ -97,7 +90,7 @@ StudyFiles TabulateLadders(const std::vector<nlohmann::json>& items) {
 }
 
 std::string DescribeLadderItem(const nlohmann::json& item) {
-  const LadderFacts facts = ReadFacts({item}).front();
+  const LadderFacts facts = ReadItems<LadderFacts>({item}).front();
   double progress = 0.0;
   for (const OracleFacts& oracle : facts.oracle) progress = std::max(progress, oracle.progress);
   return fmt::format("{} seed {}: {} poses, oracle's progress {:.2f}, {:.1f} s", facts.ladder,
@@ -107,16 +100,14 @@ std::string DescribeLadderItem(const nlohmann::json& item) {
 }  // namespace
 
 StudyInfo LadderStudy() {
-  return {"ladder",
-          "known motions of tests/ladders, pose by pose: score, generator, search, lift; MPPI with "
-          "their progress as score",
-          true,
-          false,
-          [](const StudySetup& setup) -> std::unique_ptr<Study> {
-            return std::make_unique<LadderItems>(setup);
-          },
-          DescribeLadderItem,
-          TabulateLadders};
+  return {.name = "ladder",
+          .text =
+              "known motions of tests/ladders, pose by pose: score, generator, search, lift; "
+              "MPPI with their progress as score",
+          .subject = StudySubject::kLadders,
+          .make = MakeStudy<LadderItems>,
+          .describe = DescribeLadderItem,
+          .tabulate = TabulateLadders};
 }
 
 }  // namespace pregrasp

@@ -287,15 +287,13 @@ std::string DescribeLearningItem(const nlohmann::json& item) {
 }  // namespace
 
 StudyInfo LearningStudy() {
-  return {"learning",
-          "the networks on labels, objects and ladders they were not trained on",
-          true,
-          true,
-          [](const StudySetup& setup) -> std::unique_ptr<Study> {
-            return std::make_unique<LearningItems>(setup);
-          },
-          DescribeLearningItem,
-          TabulateLearning};
+  return {.name = "learning",
+          .text = "the networks on labels, objects and ladders they were not trained on",
+          .subject = StudySubject::kLadders,
+          .takes_objects = true,
+          .make = MakeStudy<LearningItems>,
+          .describe = DescribeLearningItem,
+          .tabulate = TabulateLearning};
 }
 
 }  // namespace pregrasp

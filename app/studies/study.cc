@@ -8,9 +8,11 @@ namespace pregrasp {
 StudyInfo Table1Study();
 StudyInfo LadderStudy();
 StudyInfo LearningStudy();
+StudyInfo IkOrderStudy();
 
 const std::vector<StudyInfo>& Studies() {
-  static const std::vector<StudyInfo> studies = {Table1Study(), LadderStudy(), LearningStudy()};
+  static const std::vector<StudyInfo> studies = {Table1Study(), LadderStudy(), LearningStudy(),
+                                                 IkOrderStudy()};
   return studies;
 }
 

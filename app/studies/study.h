@@ -20,7 +20,7 @@ namespace pregrasp {
 struct StudySetup {
   std::vector<Scene> scenes;    ///< loaded, in the order of the tables; of a study of scenes
   std::vector<Ladder> ladders;  ///< of a study of ladders
-  int seeds = 3;                ///< of each scene, from first_seed on
+  int seeds = 3;                ///< of each scene or ladder, or in all, from first_seed on
   std::uint64_t first_seed = 1;
   PlannerConfig planner;
   RunConfig run;
@@ -46,11 +46,23 @@ class Study {
 /// Names and contents of files.
 using StudyFiles = std::vector<std::pair<std::string, std::string>>;
 
+/// What a study's items are made of.
+enum class StudySubject {
+  kScenes,
+  kLadders,
+  kMade,  ///< its own problems, one a seed
+};
+
+template <typename T>
+std::unique_ptr<Study> MakeStudy(const StudySetup& setup) {
+  return std::make_unique<T>(setup);
+}
+
 /// A study that `pregrasp eval` knows.
 struct StudyInfo {
   std::string name;  ///< of --study
   std::string text;  ///< one line
-  bool of_ladders = false;
+  StudySubject subject = StudySubject::kScenes;
   bool takes_objects = false;
   std::unique_ptr<Study> (*make)(const StudySetup& setup) = nullptr;
   /// One line about an item that was made, for the terminal.

@@ -9,6 +9,7 @@
 #include "app/core/json_text.h"
 #include "app/job/fields_json.h"
 #include "app/session/session.h"
+#include "app/studies/read_items.h"
 #include "app/studies/statistics.h"
 #include "app/studies/study.h"
 #include "app/studies/table_text.h"
@@ -147,14 +148,6 @@ const std::map<std::string, PaperRow>& PaperRows() {
   return rows;
 }
 
-std::vector<Row> ReadRows(const std::vector<nlohmann::json>& items) {
-  std::vector<Row> rows(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    fields::Read(JsonReader(items[i], fmt::format("item {}", i)), rows[i]);
-  }
-  return rows;
-}
-
 template <typename Value>
 std::vector<double> Collect(const std::vector<const Row*>& rows, std::optional<Value> Row::*field) {
   std::vector<double> values;
@@ -279,7 +272,7 @@ std::string CsvText(const std::vector<Row>& rows) {
 }
 
 StudyFiles TabulateTable1(const std::vector<nlohmann::json>& items) {
-  const std::vector<Row> rows = ReadRows(items);
+  const std::vector<Row> rows = ReadItems<Row>(items);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Row& row : rows) list.push_back(fields::Write(row));
   return {{"table1.json", FormatJsonIndented(list)},
@@ -288,7 +281,7 @@ StudyFiles TabulateTable1(const std::vector<nlohmann::json>& items) {
 }
 
 std::string DescribeTable1Item(const nlohmann::json& item) {
-  const Row row = ReadRows({item}).front();
+  const Row row = ReadItems<Row>({item}).front();
   return fmt::format("{} seed {}: {}, {} paths, {:.1f} s", row.scene, row.seed,
                      row.status.value_or("-"), row.n_paths.value_or(0), row.seconds);
 }
@@ -296,15 +289,11 @@ std::string DescribeTable1Item(const nlohmann::json& item) {
 }  // namespace
 
 StudyInfo Table1Study() {
-  return {"table1",
-          "every scene with every seed, beside the paper's figures",
-          false,
-          false,
-          [](const StudySetup& setup) -> std::unique_ptr<Study> {
-            return std::make_unique<Table1>(setup);
-          },
-          DescribeTable1Item,
-          TabulateTable1};
+  return {.name = "table1",
+          .text = "every scene with every seed, beside the paper's figures",
+          .make = MakeStudy<Table1>,
+          .describe = DescribeTable1Item,
+          .tabulate = TabulateTable1};
 }
 
 }  // namespace pregrasp

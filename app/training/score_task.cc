@@ -8,6 +8,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/networks/score_function.h"
 #include "app/training/metrics.h"
 
 namespace pregrasp {
@@ -140,23 +141,29 @@ torch::Tensor ScoreTask::CalcLogits(const std::vector<TrainingState>& states,
 torch::Tensor ScoreTask::CalcLoss(std::int64_t step) {
   std::vector<TrainingState> states;
   std::vector<std::vector<Label>> labels;
-  std::vector<float> values;
+  std::vector<float> values, weights;
   Rng rng(config_.seed, RngStream::kBatchNoise, step);
   for (const std::int64_t number : order_.Draw(step, config_.contexts_per_step)) {
     const TrainingContext& context = data_.training[number];
     const double heading = rng.Uniform(0.0, 2.0 * kPi);
-    states.push_back({context.structure, &context.context->phi, &context.context->occluded,
-                      CalcTrainingFrame(context.context->X_WO.linear(), heading)});
+    const bool mirrored = config_.mirror && rng.UniformInt(2) == 1;
+    Matrix3 R_GO = CalcTrainingFrame(context.context->X_WO.linear(), heading);
+    if (mirrored) R_GO = Vector3(-1.0, 1.0, 1.0).asDiagonal() * R_GO;
+    states.push_back({context.structure, &context.context->phi, &context.context->occluded, R_GO});
     const std::vector<Label> all = LabelsOf(context);
     labels.emplace_back();
     for (const int i : DrawSubset(static_cast<int>(all.size()), config_.labels_per_context, rng)) {
       labels.back().push_back(all[i]);
       values.insert(values.end(), all[i].values.begin(), all[i].values.begin() + num_outputs());
+      for (int k = 0; k < num_outputs(); ++k) {
+        weights.push_back(mirrored && k == static_cast<int>(ScoreOutput::kLifted) ? 0.0F : 1.0F);
+      }
     }
   }
   const torch::Tensor target = torch::tensor(values).view({-1, num_outputs()});
   return num_outputs() *
-         torch::binary_cross_entropy_with_logits(CalcLogits(states, labels), target);
+         torch::binary_cross_entropy_with_logits(CalcLogits(states, labels), target,
+                                                 torch::tensor(weights).view_as(target));
 }
 
 ScoreTask::Predictions ScoreTask::Predict(const std::vector<TrainingContext>& contexts) {
@@ -270,6 +277,7 @@ std::string ScoreTask::Describe() const {
               {"head", head_widths()},
               {"labels", LabelSourceName(config_.source)},
               {"progress", ProgressKindName(config_.progress)},
+              {"mirror", config_.mirror},
               {"contexts_per_step", config_.contexts_per_step},
               {"labels_per_context", config_.labels_per_context},
               {"seed", config_.seed}}

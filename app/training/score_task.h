@@ -44,6 +44,8 @@ struct ScoreTaskConfig {
   LabelSource source = LabelSource::kSearch;
   ProgressKind progress = ProgressKind::kRelief;
   ScoreVariant variant = ScoreVariant::kFull;
+  /// Half of the states are learned mirrored, all but `lifted`, which is a right hand's.
+  bool mirror = false;
   int contexts_per_step = 16;
   int labels_per_context = 16;
   std::uint64_t seed = 1;

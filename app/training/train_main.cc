@@ -134,6 +134,10 @@ int TrainScore(Options options) {
   options.score.source = ParseLabelSource(options.source);
   options.score.progress = ParseProgressKind(options.progress);
   options.score.seed = options.training.seed;
+  if (options.score.mirror && options.score.source != LabelSource::kSearch) {
+    throw InputError("--mirror", "", "--source search, whose progress has no right or left",
+                     options.source);
+  }
   const auto dataset = std::make_shared<Dataset>(ReadDatasets(options.data));
   if (options.study == "ablations") return StudyAblations(dataset, options);
   if (!options.study.empty()) throw InputError("--study", "", "ablations", options.study);
@@ -196,6 +200,8 @@ int Run(int argc, char** argv) {
       ->capture_default_str();
   score->add_option("--progress", options.progress, "What stands for progress: relief or room")
       ->capture_default_str();
+  score->add_flag("--mirror", options.score.mirror,
+                  "Learn half of the states mirrored, but for what only a right hand decides");
   score->add_option("--study", options.study,
                     "ablations: every variant with three seeds, and ablations.json");
   score->add_option("--labels", options.score.labels_per_context, "Labels per context and step")

@@ -35,6 +35,14 @@ void CheckHold(const PlanOutcome& outcome, double seconds, double dt) {
 
 }  // namespace
 
+PlanTiming CertifyTiming(PlanTiming timing, const CertifyConfig& config) {
+  timing.hold_seconds = config.hold_seconds;
+  timing.stage_seconds *= config.slow;
+  timing.transfer_seconds *= config.slow;
+  timing.transfer_speed /= config.slow;
+  return timing;
+}
+
 void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* turn_deg) {
   const RigidTransform X_a = a.bodies.front().X_WB(), X_b = b.bodies.front().X_WB();
   *shift = (X_b.translation() - X_a.translation()).norm();
@@ -73,7 +81,7 @@ Certificate CertifyPlan(const World& world, const World& half_world,
                         const EnvironmentDistance& environment, const WorldState& start,
                         const WorldPlan& plan, PlanTiming timing, const CertifyConfig& config) {
   PREGRASP_CHECK(std::abs(half_world.config().dt * 2.0 - world.config().dt) < 1e-12);
-  timing.hold_seconds = config.hold_seconds;
+  timing = CertifyTiming(timing, config);
   Certificate result;
   result.hold_seconds = config.hold_seconds;
   result.full =

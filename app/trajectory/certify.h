@@ -10,6 +10,7 @@ namespace pregrasp {
 
 /// What the object must keep in the hold; a NaN among them certifies nothing.
 struct CertifyConfig {
+  double slow = 1.0;               ///< stages and transfers take this many times as long as planned
   double hold_seconds = 1.5;       ///< the last targets are kept this long (design, section 4)
   double max_hold_shift = 0.01;    ///< the object may move this far in the hold [m]
   double max_hold_turn_deg = 5.0;  ///< and turn this far [degrees]
@@ -45,6 +46,9 @@ struct Certificate {
   std::optional<double> out_of_reach_t;  ///< when the hand was found to have no pose [s]
   std::vector<TraceRow> trace;           ///< every step at the full step, the start first
 };
+
+/// In which a plan that was made with `timing` is certified.
+PlanTiming CertifyTiming(PlanTiming timing, const CertifyConfig& config);
 
 /// How far the object is in `b` from where it is in `a` [m], and how far turned [degrees].
 void CalcShift(const WorldState& a, const WorldState& b, double* shift, double* turn_deg);

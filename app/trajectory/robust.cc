@@ -63,7 +63,7 @@ RobustWorlds::RobustWorlds(const Scene& scene, const StepConfig& config) {
 RobustResult RobustWorlds::Test(const EnvironmentDistance& environment, const WorldState& start,
                                 const WorldPlan& plan, PlanTiming timing,
                                 const CertifyConfig& config, const WorldState& nominal_end) const {
-  timing.hold_seconds = config.hold_seconds;
+  timing = CertifyTiming(timing, config);
   RobustResult result;
   for (std::size_t i = 0; i < worlds_.size(); ++i) {
     const PlanOutcome run =

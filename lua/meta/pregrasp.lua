@@ -531,6 +531,7 @@ function Optimizer:certify(options, plan) end
 
 ---@class CertifyOptions
 ---@field hold_seconds? number the last targets are kept this long, 0 to 30 s, within the rules at least 1.5; 1.5
+---@field slow? number stages and transfers take this many times as long as planned, 1 to 10; 1
 ---@field max_hold_shift? number the object may move this far in the hold, 0 to 1 m, within the rules at most 0.01; 0.01
 ---@field max_hold_turn_deg? number the object may turn this far in the hold, 0 to 180 deg, within the rules at most 5; 5
 ---@field max_unresolved? number overlap that the contact solver may leave unfinished, over all steps, 0 to 1 m, within the rules at most 0.001; 0.001

@@ -15,8 +15,8 @@
 #include "app/hand/certificate.h"
 #include "app/hand/hand_simbody.h"
 #include "app/hand/ik_terms.h"
+#include "app/hand/solvable_problem.h"
 #include "tests/hand/hand_test_data.h"
-#include "tests/hand/ik_problems.h"
 #include "tests/hand/simbody_assembler.h"
 
 namespace pregrasp {

@@ -1,7 +1,7 @@
 find_package(fcl REQUIRED)
 find_package(Simbody REQUIRED)
 pregrasp_bench(hand_bench
-  SOURCES hand_bench.cc ../hand/ik_problems.cc ../hand/simbody_assembler.cc
+  SOURCES hand_bench.cc ../hand/simbody_assembler.cc
   DEPENDS pregrasp_hand
   LINKS fcl ${Simbody_LIBRARIES})
 target_include_directories(hand_bench SYSTEM PRIVATE ${Simbody_INCLUDE_DIR})

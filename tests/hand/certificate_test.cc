@@ -6,8 +6,8 @@
 #include <set>
 #include <tuple>
 
+#include "app/hand/solvable_problem.h"
 #include "tests/hand/hand_test_data.h"
-#include "tests/hand/ik_problems.h"
 
 namespace pregrasp {
 namespace {

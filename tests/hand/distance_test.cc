@@ -7,8 +7,8 @@
 
 #include "app/geometry/signed_distance.h"
 #include "app/hand/segment_distance.h"
+#include "app/hand/solvable_problem.h"
 #include "tests/hand/hand_test_data.h"
-#include "tests/hand/ik_problems.h"
 
 namespace pregrasp {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "app/core/error.h"
 #include "app/hand/certificate.h"
+#include "app/hand/solvable_problem.h"
 #include "tests/hand/dense_check.h"
 #include "tests/hand/hand_test_data.h"
-#include "tests/hand/ik_problems.h"
 
 namespace pregrasp {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "app/geometry/mass_properties.h"
 #include "app/hand/certificate.h"
+#include "app/motion/motion_problem.h"
 #include "app/motion/touches.h"
 #include "tests/motion/motion_audit.h"
 
@@ -354,6 +355,34 @@ TEST_F(HandMotionTest, ACopySteppedOnGivesTheSameBits) {
     EXPECT_EQ(state.frames[i].configuration.X_WH.matrix(),
               copy.frames[i].configuration.X_WH.matrix());
   }
+}
+
+// Two fingers push, let go, and two others push on elsewhere: the hand relocates in between.
+TEST(RelocationTest, TheHandLeavesOneContactAndTakesAnotherWithoutPassingThroughAnything) {
+  const MotionProblem problem = MakeMotionProblem(3);
+  const IkSolver solver(ShadowHand(), problem.scene);
+  const HandMotion motion(solver, problem.task, problem.grasp, {}, problem.seed);
+  MotionState state = motion.Start();
+  motion.Finish(state);
+  EXPECT_EQ(motion.Summarize(state).failed, 0);
+  EXPECT_EQ(motion.Summarize(state).over_limits, 0);
+  std::vector<std::array<bool, kNumFingers>> stages;  // fingers that push, one after the other
+  std::vector<AuditFrame> frames;
+  int transit = 0;
+  for (std::size_t i = 0; i < state.frames.size(); ++i) {
+    const MotionFrameTask& task = state.task->frames[i];
+    AuditFrame frame{task.t, task.phase, task.X_WB, state.frames[i].configuration, {}};
+    for (int f = 0; f < kNumFingers; ++f) frame.on[f] = task.contacts[f].on;
+    transit += task.phase == MotionPhase::kTransit ? 1 : 0;
+    if (task.phase == MotionPhase::kContact && (stages.empty() || stages.back() != frame.on)) {
+      stages.push_back(frame.on);
+    }
+    frames.push_back(std::move(frame));
+  }
+  const std::array<bool, kNumFingers> first{true, true}, second{false, false, true, true};
+  EXPECT_EQ(stages, (std::vector{first, second}));
+  EXPECT_GT(transit, 10);
+  EXPECT_TRUE(AuditMotion(ShadowHand(), problem.scene, frames).IsFree());
 }
 
 }  // namespace

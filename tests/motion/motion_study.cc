@@ -17,10 +17,10 @@
 
 #include "app/core/error.h"
 #include "app/motion/hand_motion.h"
+#include "app/motion/motion_problem.h"
 #include "app/recording/motion_table.h"
 #include "app/recording/scene_file.h"
 #include "tests/motion/motion_audit.h"
-#include "tests/motion/motion_problems.h"
 
 namespace pregrasp {
 namespace {
@@ -58,6 +58,7 @@ std::vector<TraceRow> ReadTrace(const std::filesystem::path& file, const World& 
       const std::string finger = kFingerNames[f];
       if (!column.contains(finger + "_on")) continue;
       row.state.fingers[f].on = get(finger + "_on") > 0.5;
+      row.state.fingers[f].touching = !vector(finger + "_f_W").isZero();
       row.state.fingers[f].p_OC = vector(finger + "_p_OC");
       row.state.fingers[f].nhat_O = vector(finger + "_n_OC");
     }

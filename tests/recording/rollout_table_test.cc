@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 #include <vector>
 
+#include "app/core/error.h"
 #include "tests/recording/sample_run.h"
 
 namespace pregrasp {
@@ -53,6 +56,44 @@ TEST(RolloutTableTest, TheLiftsTableHasAllFiveFingersWithTheirSpringsToTheLastBi
       EXPECT_EQ(row.at(name + "_b"), tip.damping);
     }
   }
+}
+
+TEST(RolloutTableTest, BodiesAreReadBackFromBothTables) {
+  const Scene scene = SampleScene();
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "table.csv";
+  for (const bool lift : {false, true}) {
+    std::ofstream out(file);
+    out << (lift ? LiftHeader(scene) : RolloutHeader(scene));
+    for (int i = 0; i < 3; ++i) {
+      out << (lift ? LiftRow(SampleState(i)) : RolloutRow(SampleState(i)));
+    }
+    out.close();
+    const std::vector<BodyRow> rows = ReadBodyRows(file, scene);
+    ASSERT_EQ(rows.size(), 3U);
+    for (int i = 0; i < 3; ++i) {
+      const WorldState state = SampleState(i);
+      EXPECT_EQ(rows[i].t, state.t);
+      ASSERT_EQ(rows[i].X_WB.size(), state.bodies.size());
+      for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+        EXPECT_TRUE(rows[i].X_WB[b].isApprox(state.bodies[b].X_WB(), 1e-12)) << b;
+      }
+    }
+  }
+}
+
+TEST(RolloutTableTest, ADamagedTableIsNamedWithItsLine) {
+  const Scene scene = SampleScene();
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "table.csv";
+  std::ofstream(file) << RolloutHeader(scene) << "0,1,2,x,1,0,0,0\n";
+  try {
+    ReadBodyRows(file, scene);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where(), file.string() + ":2");
+    EXPECT_EQ(error.got(), "x");
+  }
+  std::ofstream(file) << "t,x\n";
+  EXPECT_THROW(ReadBodyRows(file, scene), InputError);
 }
 
 TEST(RolloutTableTest, TheRolloutsTableHasTheLiftsColumnsOfThumbAndIndexButForTheirSprings) {

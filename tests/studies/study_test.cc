@@ -96,6 +96,39 @@ TEST(Table1Test, ASceneThatThePaperLacksHasNoFigureOfIts) {
       << text;
 }
 
+TEST(IkOrderTest, AnItemIsAFunctionOfItsSeedAndTheTableSaysWhichOrderHasLess) {
+  StudySetup setup;
+  setup.seeds = 2;
+  setup.first_seed = 5;
+  const StudyInfo& info = FindStudy("ik-order");
+  const std::unique_ptr<Study> study = info.make(setup);
+  ASSERT_EQ(study->num_items(), 2);
+  nlohmann::json item = study->MakeItem(1);
+  EXPECT_EQ(item["problem"], 6);
+  for (const char* order : {"reverse", "forward"}) {
+    EXPECT_GE(item[order]["keyframes"], 8) << order;
+    EXPECT_GT(item[order]["wrist_turn_deg"], 0.0) << order;
+    EXPECT_GE(item[order]["wrist_turn_deg"], item[order]["largest_wrist_turn_deg"]) << order;
+  }
+  item["reverse"]["wrist_turn_deg"] = 40.0;
+  item["forward"]["wrist_turn_deg"] = 100.0;
+  nlohmann::json other = item;
+  other["reverse"]["wrist_turn_deg"] = 60.0;
+  const StudyFiles files = info.tabulate({item, other});
+  const std::string text = FileOf(files, "ik-order.md");
+  EXPECT_NE(text.find("| turn of the wrist between keyframes, sum [deg] | 50.000 (14.142) | "
+                      "100.000 (0.000) | 2 | 0 |"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(ParseJson(FileOf(files, "ik-order.json"), ""), nlohmann::json({item, other}));
+  const std::string svg = FileOf(files, "ik-order.svg");
+  std::size_t points = 0;
+  for (std::size_t at = svg.find("<circle"); at != std::string::npos;
+       at = svg.find("<circle", at + 1))
+    ++points;
+  EXPECT_EQ(points, 2U);
+}
+
 TEST(Table1Test, ADamagedRecordIsNamed) {
   nlohmann::json row = Row("book", 1, "ok", 0.9, 1, 10.0);
   row["r_suc"] = "high";

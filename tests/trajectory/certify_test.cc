@@ -38,6 +38,18 @@ TEST_F(CertifyTest, ADragThatEndsAtRestIsCertifiedAtBothSteps) {
   EXPECT_EQ(result.trace.size(), static_cast<std::size_t>(std::lround(2.3 * 240)) + 1);
 }
 
+TEST_F(CertifyTest, APlanCanBeGoneThroughMoreSlowly) {
+  CertifyConfig config;
+  config.slow = 2.0;
+  const Certificate slow = Certify(MakeRulerDrag(0.01, 0.06), config);
+  const Certificate planned = Certify(MakeRulerDrag(0.01, 0.06));
+  EXPECT_TRUE(slow.certified) << CertifyReasonText(slow.reasons.front());
+  // Twice 0.8 s, and a hold of 1.5 s all the same.
+  EXPECT_EQ(slow.trace.size(), static_cast<std::size_t>(std::lround(3.1 * 240)) + 1);
+  EXPECT_LT(slow.full.max_speed, 0.7 * planned.full.max_speed);
+  EXPECT_NEAR(slow.full.end.bodies[0].p_WB.x(), planned.full.end.bodies[0].p_WB.x(), 0.01);
+}
+
 TEST_F(CertifyTest, ALimitThatIsNoNumberCertifiesNothing) {
   for (double CertifyConfig::*limit :
        {&CertifyConfig::max_hold_shift, &CertifyConfig::max_hold_turn_deg}) {

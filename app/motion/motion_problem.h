@@ -9,6 +9,7 @@ namespace pregrasp {
 
 /// A motion to be made: the object's path and contacts are given, not simulated.
 struct MotionProblem {
+  std::uint64_t seed = 0;  ///< that it was made from
   Scene scene;
   MotionTask task;
   HandConfiguration grasp;

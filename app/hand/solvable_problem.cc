@@ -1,4 +1,4 @@
-#include "tests/hand/ik_problems.h"
+#include "app/hand/solvable_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tests/motion/motion_problems.h"
+#include "app/motion/motion_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,13 @@
 #include "app/core/rng.h"
 #include "app/geometry/mass_properties.h"
 #include "app/geometry/signed_distance.h"
-#include "tests/hand/ik_problems.h"
+#include "app/hand/solvable_problem.h"
 
 namespace pregrasp {
 namespace {
 
-constexpr double kStage = 0.8, kWait = 0.8, kHold = 0.4, kHandover = 0.1, kClosing = 0.6;
+// The parts of a motion [s], and how high the lift is [m].
+constexpr double kPush = 0.8, kWait = 0.8, kStand = 0.4, kTakeOver = 0.1, kClose = 0.6;
 constexpr double kLift = 1.2, kRise = 0.10;
 
 using Contacts = std::array<Placement::Contact, kNumFingers>;
@@ -62,7 +63,7 @@ class Path {
       body.q_WB =
           Quaternion(Eigen::AngleAxisd(share * yaw_, Vector3::UnitZ())) * start_.bodies[0].q_WB;
       for (int f = 0; f < kNumFingers; ++f) {
-        state_.fingers[f].on = contacts[f].on;
+        state_.fingers[f].on = state_.fingers[f].touching = contacts[f].on;
         state_.fingers[f].p_OC = contacts[f].p_OC;
         state_.fingers[f].nhat_O = contacts[f].nhat_O;
       }
@@ -87,11 +88,12 @@ class Path {
 MotionProblem MakeMotionProblem(std::uint64_t seed) {
   for (std::uint64_t attempt = 0;; ++attempt) {
     PREGRASP_CHECK(attempt < 1000, seed);
-    Rng rng(seed, RngStream::kTest, 77, attempt);
+    Rng rng(seed, RngStream::kMotionProblem, attempt);
     // A five-finger pose of which all contacts are known to be within reach, and another for the
     // second stage on the same box.
     const SolvableProblem solvable = MakeSolvableProblem(IkObject::kBox, 5, false, rng);
     MotionProblem problem;
+    problem.seed = seed;
     Body box;
     box.name = "box";
     box.shape = solvable.shapes[0];
@@ -126,15 +128,15 @@ MotionProblem MakeMotionProblem(std::uint64_t seed) {
     const Contacts first = ContactsOf(solvable, {Finger::kThumb, Finger::kIndex});
     const Contacts second = ContactsOf(solvable, {Finger::kMiddle, Finger::kRing});
     Path path(world, way, yaw);
-    path.Run(kStage, first, 0.0, 0.5, 0.0);
+    path.Run(kPush, first, 0.0, 0.5, 0.0);
     path.Run(kWait, {}, 0.5, 0.5, 0.0);
-    path.Run(kStage, second, 0.5, 1.0, 0.0);
-    path.Run(kHold, second, 1.0, 1.0, 0.0);
+    path.Run(kPush, second, 0.5, 1.0, 0.0);
+    path.Run(kStand, second, 1.0, 1.0, 0.0);
     const std::vector<TraceRow> trace = path.rows;
     path.Clear();
-    path.Run(kHandover, second, 1.0, 1.0, 0.0);
+    path.Run(kTakeOver, second, 1.0, 1.0, 0.0);
     const double closing_t = path.t();
-    path.Run(kClosing, all, 1.0, 1.0, 0.0);
+    path.Run(kClose, all, 1.0, 1.0, 0.0);
     const double lift_t = path.t();
     path.Run(kLift, all, 1.0, 1.0, kRise);
     const std::vector<TraceRow> lift = path.rows;
@@ -147,14 +149,15 @@ MotionProblem MakeMotionProblem(std::uint64_t seed) {
     IkProblem ik = MakeIkProblem(end);
     ik.warm_start = solvable.truth;
     ik.warm_start->X_WH = X_WO_end * solvable.problem.X_WB[0].inverse() * solvable.truth.X_WH;
-    const IkResult grasp = solver.Solve({}, ik, Rng(seed, RngStream::kTest, 78, attempt));
+    const IkResult grasp = solver.Solve({}, ik, Rng(seed, RngStream::kMotionProblemIk, attempt, 0));
     if (!grasp.solved()) continue;
     // Each stage has a solution at its ends.
     const auto solves = [&](const WorldState& state, const Contacts& contacts) {
       MotionFrameTask frame;
       frame.X_WB = world.GetPoses(state);
       frame.contacts = contacts;
-      return solver.Solve({}, MakeIkProblem(frame), Rng(seed, RngStream::kTest, 79, attempt))
+      return solver
+          .Solve({}, MakeIkProblem(frame), Rng(seed, RngStream::kMotionProblemIk, attempt, 1))
           .solved();
     };
     if (!solves(trace.front().state, first) || !solves(trace[trace.size() / 2].state, second)) {
