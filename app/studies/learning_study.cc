@@ -13,6 +13,7 @@
 #include "app/core/data_folder.h"
 #include "app/core/json_text.h"
 #include "app/studies/learning_trials.h"
+#include "app/studies/scatter_plot.h"
 #include "app/studies/table_text.h"
 #include "app/training/make_item.h"
 #include "app/training/metrics.h"
@@ -204,6 +205,16 @@ std::string TabulateMeshes(const Json& summary) {
       summary.at("generator_both").get<double>(), summary.at("generator_single").get<double>());
 }
 
+// What was predicted against what is, in bins of what was predicted.
+std::string PlotBins(const std::string& title, const nlohmann::json& bins) {
+  ScatterPlot plot;
+  plot.title = title;
+  plot.x_label = "predicted";
+  plot.y_label = "truth";
+  for (const nlohmann::json& bin : bins) plot.points.emplace_back(bin.at(0), bin.at(1));
+  return ToSvg(plot);
+}
+
 StudyFiles TabulateLearning(const std::vector<nlohmann::json>& items) {
   const nlohmann::json& score = items.at(0);
   Json summary{{"score_r2", score.at("all").at("r2")},
@@ -260,6 +271,10 @@ StudyFiles TabulateLearning(const std::vector<nlohmann::json>& items) {
   }
   return {
       {"learning.json", FormatJsonIndented(summary)},
+      {"learning-progress.svg",
+       PlotBins("Progress, families never seen", score.at("progress_bins"))},
+      {"learning-lifted.svg",
+       PlotBins("Probability of a lifted grasp, families never seen", score.at("lifted_bins"))},
       {"learning.md",
        fmt::format(
            "The score on labels of families that it never saw:\n\n{}\n{}Rank correlation, along "

@@ -201,6 +201,19 @@ Json JudgedLabels::ToJson() const {
           {"calibration", CalcCalibrationError(lifted, probability)}};
 }
 
+namespace {
+
+// Of labels in equal bins of what was predicted: the means of prediction and truth.
+Json BinMeans(const std::vector<double>& truth, const std::vector<double>& prediction) {
+  Json means = Json::array();
+  for (const CalibrationBin& bin : CalcCalibration(truth, prediction)) {
+    if (bin.count > 0) means.push_back({bin.mean_prediction, bin.mean_truth});
+  }
+  return means;
+}
+
+}  // namespace
+
 Json JudgeScore(const fs::path& labels, const fs::path& weights) {
   const ScoreJudge judge(weights);
   const TrainingData data = PrepareToJudge(std::make_shared<Dataset>(ReadDataset(labels)), judge,
@@ -219,8 +232,14 @@ Json JudgeScore(const fs::path& labels, const fs::path& weights) {
   }
   Json by_family;
   for (const auto& [family, judged] : families) by_family[family] = judged.ToJson();
-  return {{"labels", data.dataset->hash}, {"progress", judge.progress()},  {"all", all.ToJson()},
-          {"held", held.ToJson()},        {"not_held", not_held.ToJson()}, {"families", by_family}};
+  return {{"labels", data.dataset->hash},
+          {"progress", judge.progress()},
+          {"all", all.ToJson()},
+          {"held", held.ToJson()},
+          {"not_held", not_held.ToJson()},
+          {"families", by_family},
+          {"progress_bins", BinMeans(all.truth, all.score)},
+          {"lifted_bins", BinMeans(all.lifted, all.probability)}};
 }
 
 Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64_t end,

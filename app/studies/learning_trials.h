@@ -37,8 +37,9 @@ struct TrialConfig {
 /// The weights' own word on which families they never saw. @throws InputError if there is none.
 std::vector<std::string> ReadHeldOutFamilies(const std::filesystem::path& weights);
 
-/// What the score says of the labels that are kept with the sources, on the families held out: each
-/// label's family, whether a finger has to press, its truths and the score's two outputs.
+/// What the score says of the labels that are kept with the sources, on the families held out:
+/// JudgedLabels::ToJson of all, by family, held by a finger or not; and of both outputs, in ten
+/// bins, the means of prediction and truth.
 /// @param labels  a file of PackStates.
 nlohmann::ordered_json JudgeScore(const std::filesystem::path& labels,
                                   const std::filesystem::path& weights);

@@ -78,6 +78,23 @@ std::string ShowRuns(const fs::path& runs, const fs::path& pictures, const std::
   return text;
 }
 
+// Copies the study's plots to the pictures and refers to them.
+std::string ShowPlots(const fs::path& folder, const fs::path& pictures) {
+  std::vector<fs::path> plots;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".svg") plots.push_back(entry.path());
+  }
+  std::sort(plots.begin(), plots.end());
+  std::string text;
+  for (const fs::path& plot : plots) {
+    fs::create_directories(pictures);
+    WriteWholeFile(pictures / plot.filename(), ReadWholeFile(plot));
+    text += fmt::format("\n![{}]({}/{})\n", plot.stem().string(), pictures.filename().string(),
+                        plot.filename().string());
+  }
+  return text;
+}
+
 }  // namespace
 
 void WriteReport(const std::vector<fs::path>& folders, const fs::path& file) {
@@ -93,10 +110,9 @@ void WriteReport(const std::vector<fs::path>& folders, const fs::path& file) {
     text += fmt::format("\n## {}\n\n", study) +
             DescribeStudy(description, description_file.string()) +
             ReadWholeFile(folder / (study + ".md"));
-    if (fs::is_directory(folder / "runs")) {
-      fs::path pictures = file;
-      text += ShowRuns(folder / "runs", pictures.replace_extension(), study);
-    }
+    const fs::path pictures = fs::path(file).replace_extension();
+    text += ShowPlots(folder, pictures);
+    if (fs::is_directory(folder / "runs")) text += ShowRuns(folder / "runs", pictures, study);
   }
   WriteWholeFile(file, text);
 }
