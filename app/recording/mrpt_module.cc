@@ -1,4 +1,5 @@
-// The only file with MRPT's headers, which take seconds to compile; it calls nothing of ours.
+// MRPT's logs; with mrpt_scene_module.cc the only files with its headers, which take seconds to
+// compile; calls nothing of ours.
 #include <mrpt/core/Clock.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CActionCollection.h>

@@ -13,6 +13,8 @@
 
 #include "app/core/data_folder.h"
 #include "app/job/run_policy.h"
+#include "app/recording/checked_file.h"
+#include "app/recording/gzip_file.h"
 #include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
 #include "tests/bindings/run_program.h"
@@ -292,6 +294,19 @@ TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
   }
   EXPECT_GE(certified, 2);
   EXPECT_LE(certified, RunConfig().plans);
+
+  // The same run as an animation and as a scene of MRPT's; what fits neither is one line.
+  const auto show = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"show", "out/ruler"});
+    return RunProgram(arguments, folder);
+  };
+  EXPECT_EQ(show({"--out", "motion.glb"}).code, 0);
+  EXPECT_EQ(ReadFile(folder / "motion.glb").substr(0, 4), "glTF");
+  EXPECT_EQ(show({"--step", run.steps.back().id, "--out", "step.3Dscene"}).code, 0);
+  EXPECT_NE(ReadGzipFile(folder / "step.3Dscene").find("COpenGLScene"), std::string::npos);
+  EXPECT_EQ(show({"--step", "scene.start", "--out", "motion.glb"}).code, 2);
+  EXPECT_EQ(show({"--out", "step.png"}).err,
+            "--step: expected a step's id, as in steps.jsonl: path.1.mppi.5, got nothing\n");
 
   std::uintmax_t bytes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder / "out" / "ruler")) {
