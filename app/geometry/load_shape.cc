@@ -68,9 +68,17 @@ void RequireClosed(const TriangleMesh& mesh, const std::string& name, const std:
                    const std::string& field) {
   const MeshDefects defects = FindDefects(mesh);
   if (defects.open_edges > 0) {
-    throw InputError(where, field, "a closed mesh",
-                     fmt::format("{}, which has {}", name,
-                                 Count(defects.open_edges, "open edge", "open edges")));
+    const std::vector<Hole> holes = FindHoles(mesh);
+    const AlignedBox& largest = holes.front().bounds;
+    const Vector3 at = (1e4 * largest.center()).array().round().matrix() * 1e-4;
+    throw InputError(
+        where, field, "a closed mesh",
+        fmt::format("{}, which has {}: {} about ({:.4g}, {:.4g}, {:.4g}) m, {:.2g} m "
+                    "across",
+                    name, Count(defects.open_edges, "open edge", "open edges"),
+                    holes.size() == 1 ? std::string("a hole")
+                                      : fmt::format("{} holes, the largest", holes.size()),
+                    at.x() + 0.0, at.y() + 0.0, at.z() + 0.0, largest.sizes().maxCoeff()));
   }
   if (defects.crowded_edges > 0 && defects.repeated_faces > 0) {
     throw InputError(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -154,6 +155,33 @@ MeshDefects FindDefects(const TriangleMesh& mesh) {
     }
   });
   return defects;
+}
+
+std::vector<Hole> FindHoles(const TriangleMesh& mesh) {
+  std::vector<std::pair<int, int>> edges;
+  const std::vector<EdgeSide> sides = ListEdgeSides(mesh);
+  ForEachEdge(sides, [&](std::size_t begin, std::size_t end) {
+    if (end - begin == 1) edges.emplace_back(sides[begin].low, sides[begin].high);
+  });
+  // The root of a vertex stands for its hole.
+  std::vector<int> parent(mesh.V.rows());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root_of = [&](int v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const auto& [a, b] : edges) parent[root_of(a)] = root_of(b);
+  std::map<int, Hole> holes;
+  for (const auto& [a, b] : edges) {
+    Hole& hole = holes[root_of(a)];
+    ++hole.edges;
+    for (const int v : {a, b}) hole.bounds.extend(Vector3(mesh.V.row(v)));
+  }
+  std::vector<Hole> list;
+  for (const auto& [root, hole] : holes) list.push_back(hole);
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Hole& a, const Hole& b) { return a.edges > b.edges; });
+  return list;
 }
 
 TriangleMesh WeldVertices(const TriangleMesh& mesh, double tolerance) {

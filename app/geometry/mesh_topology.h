@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "app/geometry/bounds.h"
 #include "app/scene/shape.h"
 
 namespace pregrasp {
@@ -27,6 +28,14 @@ struct MeshDefects {
   bool closed() const { return open_edges == 0 && crowded_edges == 0 && turned_edges == 0; }
 };
 MeshDefects FindDefects(const TriangleMesh& mesh);
+
+/// Open edges that hang together.
+struct Hole {
+  int edges = 0;
+  AlignedBox bounds;  ///< of their ends
+};
+/// Those of most edges first.
+std::vector<Hole> FindHoles(const TriangleMesh& mesh);
 
 /// Merges vertices that lie within `tolerance` [m] of one another (the one with the smallest index
 /// stays, 0 merges equal ones), and drops faces that lose a corner and vertices without a face.

@@ -200,16 +200,38 @@ TriangleMesh ExtractBest(const SampledCloud& cloud, ScalarGrid grid) {
   return more < kAboutAsWell * cloud.spacing ? smooth_mesh : sharp_mesh;
 }
 
+// Of pairs of neighbours on one sheet, how many have normals to opposite sides. Two sides of a thin
+// plate are no such pair: each lies behind the other.
+double CalcFlippedShare(const SampledCloud& cloud) {
+  constexpr int kLooked = 6;
+  constexpr double kParallel = 0.9, kBeside = 0.2, kBehind = 0.05;
+  int pairs = 0, flipped = 0;
+  for (Eigen::Index i = 0; i < cloud.P.rows(); ++i) {
+    for (int k = 0; k < kLooked; ++k) {
+      const int j = cloud.near[i][k];
+      const Vector3 d = (cloud.P.row(j) - cloud.P.row(i)).transpose();
+      const double along = cloud.N.row(i).dot(cloud.N.row(j)), off = cloud.N.row(i).dot(d),
+                   off_back = -cloud.N.row(j).dot(d), apart = d.norm();
+      if (std::abs(along) < kParallel || std::abs(off) > kBeside * apart) continue;
+      ++pairs;
+      const bool plate = off < -kBehind * apart && off_back < -kBehind * apart;
+      flipped += along < 0.0 && !plate ? 1 : 0;
+    }
+  }
+  return pairs == 0 ? 0.0 : static_cast<double>(flipped) / pairs;
+}
+
 // True when the points' own normals serve; else they get those of planes.
 bool TakeNormals(const MatrixX3& normals, const std::vector<int>& chosen, SampledCloud& cloud) {
   if (normals.rows() > 0) cloud.N = TakeRows(normals, chosen);
-  const bool usable =
+  bool usable =
       cloud.N.rows() > 0 && cloud.N.allFinite() && cloud.N.rowwise().squaredNorm().minCoeff() > 0.0;
   if (usable) {
+    constexpr double kMostFlipped = 0.1;  // estimated normals point to either side
     cloud.N.rowwise().normalize();
-  } else {
-    FitPlanes(cloud);
+    usable = CalcFlippedShare(cloud) < kMostFlipped;
   }
+  if (!usable) FitPlanes(cloud);
   return usable;
 }
 

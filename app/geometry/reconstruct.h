@@ -26,15 +26,15 @@ struct UnclosedCloud : std::runtime_error {
 };
 
 /// The closed surface that points were sampled from. Normals are those given, or of planes fitted
-/// to neighbours; a flood from outside that the points hold up tells which way is out. Near the
-/// points the surface is where the height over their planes is zero (SurfaceHeight), elsewhere the
-/// flood decides; it is taken from a grid by marching tetrahedra and simplified to at most 8,000
-/// triangles. Deterministic.
-/// Limits: edges are sharp to about a fifth of the spacing. Points that chance placed leave bare
-/// spots, where the surface may be off by up to two spacings, but not by more than 0.4 outside the
-/// points' convex hull, nor by more than a few hundredths where that is flat. Points must lie
-/// closer than the thinnest wall is thick when they are evenly spread, than half of it when chance
-/// placed them; a wall that broke is refused by the number of holes it leaves (more than 10).
+/// to neighbours where none are, or where they point to either side at random; a flood from outside
+/// that the points hold up tells which way is out. Near the points the surface is where the height
+/// over their planes is zero (SurfaceHeight), elsewhere the flood decides; it is taken from a grid
+/// by marching tetrahedra and simplified to at most 8,000 triangles. Deterministic. Limits: edges
+/// are sharp to about a fifth of the spacing. Points that chance placed leave bare spots, where the
+/// surface may be off by up to two spacings, but not by more than 0.4 outside the points' convex
+/// hull, nor by more than a few hundredths where that is flat. Points must lie closer than the
+/// thinnest wall is thick when they are evenly spread, than half of it when chance placed them; a
+/// wall that broke is refused by the number of holes it leaves (more than 10).
 /// @param points   at least 100; of more than 15,000 an even share is used.
 /// @param normals  outward, one for each point, or no rows.
 /// @throws UnclosedCloud

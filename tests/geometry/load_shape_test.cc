@@ -358,7 +358,21 @@ TEST_F(LoadShapeTest, RefusesAnOpenMeshAndCountsItsOpenEdges) {
   Write("cup.obj", testing::ObjText(mesh));
   EXPECT_EQ(Refusal("cup.obj"),
             "a.lua:7: object.shape: expected a closed mesh, got \"cup.obj\", which has 12 open "
-            "edges");
+            "edges: a hole about (0, 0, 0.05) m, 0.08 m across");
+  // A box without one face of its top and one of its bottom.
+  const TriangleMesh box = Tessellate(Box{Vector3(1, 1, 1)});
+  std::vector<bool> keep(box.F.rows(), true);
+  for (const double z : {0.5, -0.5}) {
+    for (int f = 0; f < box.F.rows(); ++f) {
+      if (!(box.V(box.F.row(f), 2).array() == z).all()) continue;
+      keep[f] = false;
+      break;
+    }
+  }
+  Write("box.obj", testing::ObjText(TakeFaces(box, keep)));
+  EXPECT_NE(Refusal("box.obj").find("6 open edges: 2 holes, the largest about ("),
+            std::string::npos)
+      << Refusal("box.obj");
 }
 
 TEST_F(LoadShapeTest, RefusesMoreThanTwoTrianglesAtAnEdge) {

@@ -121,6 +121,24 @@ TEST(ReconstructTest, TakesChanceSpacingAndNoiseWithAndWithoutNormals) {
   }
 }
 
+// As estimators without an orientation leave them.
+TEST(ReconstructTest, NormalsThatPointToEitherSideAreNotBelieved) {
+  const Shape box = Box{Vector3(0.1, 0.06, 0.04)}, can = Cylinder{0.033, 0.1};
+  for (const Shape& shape : {box, can}) {
+    for (const double noise : {0.0, 3e-4}) {
+      PointCloud cloud = SampleByChance(shape, 2000, noise, Rng(5));
+      Rng rng(6);
+      for (Eigen::Index i = 0; i < cloud.N.rows(); ++i) {
+        if (rng.UniformInt(2) == 1) cloud.N.row(i) *= -1.0;
+      }
+      const Reconstruction made = ReconstructSurface(cloud.P, cloud.N);
+      const Reconstruction without = ReconstructSurface(cloud.P, MatrixX3(0, 3));
+      EXPECT_EQ(made.mesh.V, without.mesh.V);
+      EXPECT_NEAR(CalcVolume(made.mesh), CalcVolume(shape), 0.04 * CalcVolume(shape));
+    }
+  }
+}
+
 TEST(ReconstructTest, ReachesNoFartherOutThanThePointsWhereTheyLieFlat) {
   // A body must stand on the plane of its lowest points, not on spikes at its corners.
   for (int seed = 0; seed < 5; ++seed) {
