@@ -145,6 +145,17 @@ class Runner {
            std::tuple(b.reached, b.lifted, y.worlds_held(), b.feasible);
   }
 
+  // Further; or as far, with fewer frames beyond the hand's limits.
+  static bool GoesFurther(const Node& x, const Node& y) {
+    const auto over_limits = [](const Node& node) {
+      const auto* motion = std::get_if<MotionFacts>(&node.facts.details);
+      return motion == nullptr ? 0 : motion->over_limits;
+    };
+    const Progress &a = x.progress, &b = y.progress;
+    return std::tuple(a.reached, -over_limits(x), a.lifted, a.feasible) >
+           std::tuple(b.reached, -over_limits(y), b.lifted, b.feasible);
+  }
+
   // What hand motions to the grasps of some plans came to.
   struct TriedMotions {
     const Node* best = nullptr;
@@ -169,7 +180,7 @@ class Runner {
       const Node* const best = motions.best;
       plans = SlowDown(optimised, plans, *motions.haste, name);
       motions = MoveHands(plans, name);
-      if (!motions.done && !(best->progress < motions.best->progress)) motions.best = best;
+      if (!motions.done && !GoesFurther(*motions.best, *best)) motions.best = best;
     }
     const bool ok = motions.best->progress.reached == Progress::Reached::kOk;
     return ok ? ShowFrames(timeline_, *motions.best) : *motions.best;
@@ -202,7 +213,7 @@ class Runner {
         if (turn >= plan.lifting.size() || motions == config_.motions) continue;
         Report(name + ", hand motion", motions++, config_.motions);
         const Node& moved = MoveHand(*plan.end, plan.lifting[turn]);
-        if (tried.best == plan.end || tried.best->progress < moved.progress) tried.best = &moved;
+        if (tried.best == plan.end || GoesFurther(moved, *tried.best)) tried.best = &moved;
         const auto* facts = std::get_if<MotionFacts>(&moved.facts.details);
         if (facts == nullptr) continue;
         const double haste =

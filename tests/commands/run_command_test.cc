@@ -327,6 +327,32 @@ TEST(MainJobLongTest, FourSeedsOfFiveSucceed) {
   EXPECT_GE(succeeded, 4);
 }
 
+// A hand with a twentieth of the wrist's speed: no motion keeps to it until plans are slowed down.
+TEST(MainJobLongTest, APlanThatIsTooFastForTheHandIsCertifiedAgainSlower) {
+  const TestFolder temporary;
+  const fs::path& folder = temporary.path();
+  setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
+  EXPECT_EQ(RunProgram({"run", kScene, "--pictures", "none", "--paths", "1", "--set",
+                        "motion.wrist_speed=0.05"},
+                       folder)
+                .code,
+            0);
+  const LoadedRun run = LoadRun(folder / "out" / "ruler");
+  double planned = 0.0, slowed = 1e9;  // of a motion's contact part, the shares of the limits
+  for (const StepFacts& step : run.steps) {
+    const auto* motion = std::get_if<MotionFacts>(&step.details);
+    const auto* plan = run.FindBefore<CertifyFacts>(step);
+    if (motion == nullptr || plan == nullptr) continue;
+    for (const RatesFacts& phase : motion->phases) {
+      if (phase.phase != "contact") continue;
+      if (plan->slow == 1.0) planned = std::max(planned, phase.speed_share);
+      if (plan->slow > 1.0) slowed = std::min(slowed, phase.speed_share);
+    }
+  }
+  EXPECT_GT(planned, 1.0);
+  EXPECT_LE(slowed, 1.0);
+}
+
 TEST(DocsTest, TheStepByStepScriptRunsAsPrinted) {
   const TestFolder temporary;
   const fs::path& folder = temporary.path();
