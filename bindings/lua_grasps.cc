@@ -6,10 +6,10 @@
 namespace pregrasp {
 namespace {
 
-const Schema kLift{
-    "Lift",
-    {"held", "reasons", "text", "height", "shift_mm", "turn_deg", "slip_mm", "direction_W",
-     "pushes", "soft", "stiff", "not_converged", "unresolved_mm", "neighbours", "step_id"}};
+const Schema kLift{"Lift",
+                   {"held", "reasons", "text", "height", "shift_mm", "turn_deg", "slip_mm",
+                    "direction_W", "pushes", "soft", "stiff", "forearm_free", "not_converged",
+                    "unresolved_mm", "neighbours", "step_id"}};
 
 constexpr int kGraspKib = 20;
 
@@ -132,6 +132,7 @@ Pushed GraspLift(lua_State* L, LuaGrasp& grasp) {
       .Set("pushes", lift.pushes)
       .Set("soft", lift.soft)
       .Set("stiff", lift.stiff)
+      .Set("forearm_free", lift.forearm_free)
       .Set("not_converged", lift.not_converged)
       .Set("unresolved_mm", lift.unresolved_mm)
       .Set("step_id", grasp.lift->id());

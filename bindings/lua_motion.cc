@@ -13,7 +13,7 @@ namespace {
 const Schema kMotionSummary{
     "MotionSummary",
     {"frames", "failed", "blocked_ways", "loosened", "max_tip_error_mm", "min_clearance_mm",
-     "max_joint_speed", "max_wrist_speed", "over_limits"}};
+     "max_joint_speed", "max_wrist_speed", "forearm_free", "over_limits"}};
 
 constexpr int kMotionKib = 100;
 
@@ -161,6 +161,7 @@ Pushed MotionSummaryOf(lua_State* L, LuaMotion& motion) {
       .Set("min_clearance_mm", 1e3 * summary.min_clearance)
       .Set("max_joint_speed", summary.rates.joint_speed)
       .Set("max_wrist_speed", summary.rates.wrist_speed)
+      .Set("forearm_free", IsForearmFree(state->planner->forearm(), *state->motion_state))
       .Set("over_limits", summary.over_limits);
   return {1};
 }

@@ -181,6 +181,7 @@ Pushed TrajectoryBody(lua_State* L, LuaTrajectory& trajectory, const std::string
 
 bool TrajectoryCertified(LuaTrajectory& t) { return t.facts().certified; }
 std::vector<std::string> TrajectoryReasons(LuaTrajectory& t) { return t.facts().reasons; }
+double TrajectorySlow(LuaTrajectory& t) { return t.facts().slow; }
 double TrajectoryHoldShift(LuaTrajectory& t) { return t.facts().hold_shift_mm; }
 double TrajectoryHoldTurn(LuaTrajectory& t) { return t.facts().hold_turn_deg; }
 double TrajectoryStepShift(LuaTrajectory& t) { return t.facts().step_shift_mm; }
@@ -317,6 +318,7 @@ const ClassInfo& TrajectoryClass() {
                               {
                                   Property<&TrajectoryCertified>("certified"),
                                   Property<&TrajectoryReasons>("reasons"),
+                                  Property<&TrajectorySlow>("slow"),
                                   Property<&TrajectoryHoldShift>("hold_shift_mm"),
                                   Property<&TrajectoryHoldTurn>("hold_turn_deg"),
                                   Property<&TrajectoryStepShift>("step_shift_mm"),

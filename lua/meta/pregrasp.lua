@@ -580,6 +580,7 @@ function Optimizer:shot(options) end
 ---@class Trajectory
 ---@field certified boolean
 ---@field reasons string[] why not; empty if it is
+---@field slow number how many times as long as planned its stages and transfers take
 ---@field hold_shift_mm number how far the object moves in the hold
 ---@field hold_turn_deg number
 ---@field step_shift_mm number between the final positions at the full and at half the time step
@@ -675,7 +676,7 @@ local Grasps = {}
 function Grasps:all() end
 
 ---The feasible grasp that comes first by, in turn: its lift is held, no neighbour is disturbed, pushes withstood,
----soft and stiff, the wrench's margin; nil without any.
+---soft and stiff, it is the generator's, the forearm is free, the wrench's margin; nil without any.
 ---@return Grasp?
 function Grasps:best() end
 
@@ -734,6 +735,7 @@ function Grasp:shot(options) end
 ---@field pushes integer of six pushes with half the weight at the top, those that it withstands
 ---@field soft boolean whether the lift holds with fingers of 150 N/m too
 ---@field stiff boolean and with 600 N/m
+---@field forearm_free boolean whether the forearm, 20 cm behind the palm and 3 cm thick, is clear of all bodies at the grasp and at the end
 ---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
 ---@field unresolved_mm number how far bodies may have sunk into each other in such steps; over 1 it is not held
 ---@field neighbours NeighbourMotion at its end
@@ -781,6 +783,7 @@ function Motion:shot(options) end
 ---@field min_clearance_mm number
 ---@field max_joint_speed number [rad/s]
 ---@field max_wrist_speed number [m/s]
+---@field forearm_free boolean whether the forearm, 20 cm behind the palm and 3 cm thick, is clear of all bodies in every frame
 ---@field over_limits integer frames at which the hand exceeds a limit of speed or acceleration
 
 ---@class Frame
