@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/core/json_values.h"
 #include "app/core/sha256.h"
 #include "app/core/text.h"
 
@@ -91,20 +92,18 @@ void AddConfig(const SurfacePointsConfig& surface, const StartCertificateConfig&
       << ik.slsqp_evaluations << ik.clearance_buffer << ik.influence << ik.warm_starts;
 }
 
-Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
 Vector3 ToVector3(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
 // JSON has no infinity; null stands for it.
-Json ToJson(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json FiniteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 double ToDouble(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
 }
 
-Json ToJson(const GraspResult& grasp) {
+Json DescribeGrasp(const GraspResult& grasp) {
   Json contacts = Json::array();
   for (std::size_t i = 0; i < grasp.contacts.size(); ++i) {
     const GraspContact& contact = grasp.contacts[i];
@@ -116,13 +115,11 @@ Json ToJson(const GraspResult& grasp) {
   }
   const IkResult& ik = grasp.kinematics->ik;
   const Matrix3& R_WH = ik.X_WH.linear();
-  return {
-      {"contacts", contacts},
-      {"margin", grasp.wrench->margin},
-      {"p_WH", ToJson(Vector3(ik.X_WH.translation()))},
-      {"R_WH",
-       {ToJson(Vector3(R_WH.row(0))), ToJson(Vector3(R_WH.row(1))), ToJson(Vector3(R_WH.row(2)))}},
-      {"q", std::vector<double>(ik.q.data(), ik.q.data() + ik.q.size())}};
+  return {{"contacts", contacts},
+          {"margin", grasp.wrench->margin},
+          {"p_WH", ToJson(Vector3(ik.X_WH.translation()))},
+          {"R_WH", ToJson(R_WH)},
+          {"q", std::vector<double>(ik.q.data(), ik.q.data() + ik.q.size())}};
 }
 
 GraspResult ToGrasp(const Json& json) {
@@ -157,18 +154,18 @@ GraspResult ToGrasp(const Json& json) {
   return grasp;
 }
 
-Json ToJson(const StartCertificate& certificate) {
+Json DescribeCertificate(const StartCertificate& certificate) {
   const BalanceProof& proof = certificate.proof;
   const GraspSearchStats& search = certificate.search;
   Json json = {
       {"verdict", static_cast<int>(certificate.verdict)},
       {"mu", certificate.mu},
-      {"mu_star", ToJson(certificate.mu_star)},
+      {"mu_star", FiniteOrNull(certificate.mu_star)},
       {"proof",
        {{"impossible", proof.impossible},
         {"direction", std::vector<double>(proof.direction.data(), proof.direction.data() + 6)},
         {"slack", proof.slack},
-        {"covered", ToJson(proof.covered)}}},
+        {"covered", FiniteOrNull(proof.covered)}}},
       {"proof_slack", certificate.proof_slack},
       {"surface_points", certificate.surface_points},
       {"reachable_points", certificate.reachable_points},
@@ -179,7 +176,7 @@ Json ToJson(const StartCertificate& certificate) {
       {"search",
        {search.drawn, search.plausible, search.on_edges, search.held, search.solved, search.reached,
         search.feasible, search.tried}}};
-  if (certificate.example) json["example"] = ToJson(*certificate.example);
+  if (certificate.example) json["example"] = DescribeGrasp(*certificate.example);
   return json;
 }
 
@@ -261,7 +258,7 @@ std::optional<StartCertificate> LoadStartVerdict(const std::filesystem::path& fo
 
 bool StoreStartVerdict(const std::filesystem::path& folder, const std::string& key,
                        const StartCertificate& certificate) {
-  const Json body = ToJson(certificate);
+  const Json body = DescribeCertificate(certificate);
   const Json file = {{"key", key}, {"sha256", Sha256(body.dump())}, {"start", body}};
   std::error_code error;
   std::filesystem::create_directories(folder, error);
