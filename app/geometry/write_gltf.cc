@@ -36,9 +36,10 @@ aiMesh* MakeMesh(const AnimatedMesh& animated, unsigned material) {
   const auto count = static_cast<unsigned>(mesh.F.rows());
   result->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
   result->mMaterialIndex = material;
+  const std::size_t corners = std::size_t{3} * count;
   result->mNumVertices = 3 * count;
-  result->mVertices = new aiVector3D[3 * count];
-  result->mNormals = new aiVector3D[3 * count];
+  result->mVertices = new aiVector3D[corners];
+  result->mNormals = new aiVector3D[corners];
   result->mNumFaces = count;
   result->mFaces = new aiFace[count];
   for (unsigned f = 0; f < count; ++f) {
@@ -92,7 +93,7 @@ void Fill(aiScene& scene, const std::vector<AnimatedMesh>& meshes,
   scene.mNumMeshes = scene.mNumMaterials = count;
   scene.mMeshes = new aiMesh*[count];
   scene.mMaterials = new aiMaterial*[count];
-  aiNode* root = scene.mRootNode = new aiNode("z_up");
+  aiNode* root = scene.mRootNode = new aiNode("z up");  // a name that no body has
   root->mTransformation =
       ToAssimp(MakeTransform(RotationFromRpy({-0.5 * kPi, 0.0, 0.0}), Vector3::Zero()));
   root->mNumChildren = count;
@@ -111,15 +112,16 @@ void Fill(aiScene& scene, const std::vector<AnimatedMesh>& meshes,
     if (mesh.X_WB.size() > 1) channels.push_back(MakeChannel(mesh, times));
   }
   if (channels.empty()) return;
-  auto* animation = new aiAnimation;
-  animation->mName = aiString("motion");
-  animation->mTicksPerSecond = 1.0;
-  animation->mDuration = times.back();
-  animation->mNumChannels = static_cast<unsigned>(channels.size());
-  animation->mChannels = new aiNodeAnim*[channels.size()];
-  std::copy(channels.begin(), channels.end(), animation->mChannels);
   scene.mNumAnimations = 1;
-  scene.mAnimations = new aiAnimation* [1] { animation };
+  scene.mAnimations = new aiAnimation*[1];
+  scene.mAnimations[0] = new aiAnimation;
+  aiAnimation& animation = *scene.mAnimations[0];
+  animation.mName = aiString("motion");
+  animation.mTicksPerSecond = 1.0;
+  animation.mDuration = times.back();
+  animation.mNumChannels = static_cast<unsigned>(channels.size());
+  animation.mChannels = new aiNodeAnim*[channels.size()];
+  std::copy(channels.begin(), channels.end(), animation.mChannels);
 }
 
 }  // namespace

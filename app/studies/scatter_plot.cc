@@ -43,7 +43,8 @@ std::string ToSvg(const ScatterPlot& plot) {
   double most = 0.0;
   for (const auto& [x, y] : plot.points) most = std::max({most, x, y});
   const double tick = ChooseTick(std::max(most, 1e-9));
-  const double end = tick * std::ceil(std::max(most, 1e-9) / tick);
+  const int ticks = static_cast<int>(std::ceil(std::max(most, 1e-9) / tick));
+  const double end = ticks * tick;
   const double right = kSize - kRight, low = kSize - kBottom;
   const auto x_of = [&](double x) { return kLeft + x / end * (right - kLeft); };
   const auto y_of = [&](double y) { return low - y / end * (low - kTop); };
@@ -52,7 +53,8 @@ std::string ToSvg(const ScatterPlot& plot) {
       "font-family=\"sans-serif\" font-size=\"13\" fill=\"#333\">\n"
       "<rect width=\"{0:.0f}\" height=\"{0:.0f}\" fill=\"#fff\"/>\n",
       kSize);
-  for (double at = 0.0; at <= end * (1.0 + 1e-9); at += tick) {
+  for (int i = 0; i <= ticks; ++i) {
+    const double at = i * tick;
     svg += Line(x_of(at), kTop, x_of(at), low, "#e4e4e4") +
            Line(kLeft, y_of(at), right, y_of(at), "#e4e4e4") +
            Text(x_of(at), low + 18.0, "text-anchor=\"middle\"", fmt::format("{:g}", at)) +
