@@ -51,6 +51,7 @@ class PlanRunner {
 
   const WorldState& state() const { return state_; }
   bool diverged() const { return outcome_.diverged; }
+  void Diverge() { outcome_.diverged = true; }
 
   // Puts the fingers of a stage on or off. F has on, kept and contact. Those that are not kept let
   // go at once; those that come are on once the hand has had the time to bring them (CalcWait).
@@ -297,10 +298,13 @@ PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environm
     runner.StartStage(stage, false);
     for (int k = 0; k < timing.knots && !runner.diverged(); ++k) {
       std::array<Vector3, kNumPlanningFingers> p_WTargets;
+      bool known = true;
       for (int j = 0; j < kNumPlanningFingers; ++j) {
-        if (stage[j].on) p_WTargets[j] = stage[j].p_WTargets.at(k);
+        if (!stage[j].on) continue;
+        known = known && k < std::ssize(stage[j].p_WTargets);
+        if (known) p_WTargets[j] = stage[j].p_WTargets[k];
       }
-      runner.RunKnot(p_WTargets);
+      known ? runner.RunKnot(p_WTargets) : runner.Diverge();
     }
   }
   return runner.Finish();

@@ -59,7 +59,8 @@ PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environm
                          const WorldState& start, const RelativePlan& plan,
                          const PlanTiming& timing, std::vector<TraceRow>* trace = nullptr);
 
-/// Simulates a plan whose targets are given in the world, by either stepper.
+/// Simulates a plan whose targets are given in the world, by either stepper. A plan that ends
+/// before its stages do, as one that was simulated until it diverged, diverges there.
 /// @param trace  as above.
 PlanOutcome SimulatePlan(const World& world, const EnvironmentDistance& environment,
                          const WorldState& start, const WorldPlan& plan, const PlanTiming& timing,

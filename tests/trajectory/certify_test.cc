@@ -91,6 +91,16 @@ TEST_F(CertifyTest, AStateThatOverflowsDivergesAndLeavesFactsThatAreNumbers) {
                         outcome.end.bodies[0].p_WB, outcome.end.fingers[1].f_W));
 }
 
+// It comes from a simulation that diverged, where another one does not.
+TEST_F(CertifyTest, APlanThatEndsBeforeItsStagesIsNotCertified) {
+  WorldPlan plan = MakeRulerDrag(0.01, 0.06);
+  plan.stages[0][1].p_WTargets.pop_back();
+  const Certificate result = Certify(plan);
+  EXPECT_FALSE(result.certified);
+  EXPECT_EQ(result.reasons, std::vector{CertifyReason::kDiverged});
+  EXPECT_GT(result.trace.size(), 100U);
+}
+
 TEST_F(CertifyTest, APlanWithoutContactIsNotCertified) {
   WorldPlan plan;
   plan.stages.resize(1);
