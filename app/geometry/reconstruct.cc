@@ -309,6 +309,7 @@ Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normal
 
   const MeshDistance to_mesh(result.mesh);
   std::vector<double> errors;
+  errors.reserve(chosen.size());
   for (const int i : chosen) errors.push_back(std::abs(to_mesh.Calc(points.row(i))));
   result.mean_error =
       std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());

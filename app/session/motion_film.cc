@@ -45,6 +45,7 @@ void WriteMotionFilm(const LoadedRun& run, const std::filesystem::path& file) {
                      run.summary.status.value_or("one without"));
   }
   std::vector<double> times;
+  times.reserve(frames.size());
   for (const MotionRecord& frame : frames) times.push_back(frame.t);
   const auto X_WB = FindBodies(run, frames);
   std::vector<AnimatedMesh> meshes;
