@@ -280,13 +280,7 @@ TEST_F(HandMotionTest, AtTenTimesTheFrameRateAnIndependentCheckFindsNothingAndLi
     const HandMotion motion = Make(MotionConfig(), seed);
     MotionState state = motion.Start();
     motion.Finish(state);
-    std::vector<AuditFrame> frames;
-    for (std::size_t i = 0; i < state.frames.size(); ++i) {
-      const MotionFrameTask& task = state.task->frames[i];
-      frames.push_back({task.t, task.phase, task.X_WB, state.frames[i].configuration, {}});
-      for (int f = 0; f < kNumFingers; ++f) frames.back().on[f] = task.contacts[f].on;
-    }
-    const MotionAudit audit = AuditMotion(ShadowHand(), scene_, frames);
+    const MotionAudit audit = AuditMotion(ShadowHand(), scene_, FramesOf(state));
     EXPECT_EQ(audit.bad_frames, 0) << audit.worst_pair;
     EXPECT_EQ(audit.bad_ways, 0) << audit.worst_pair;
     EXPECT_EQ(audit.out_of_range, 0);
@@ -367,17 +361,13 @@ TEST(RelocationTest, TheHandLeavesOneContactAndTakesAnotherWithoutPassingThrough
   EXPECT_EQ(motion.Summarize(state).failed, 0);
   EXPECT_EQ(motion.Summarize(state).over_limits, 0);
   std::vector<std::array<bool, kNumFingers>> stages;  // fingers that push, one after the other
-  std::vector<AuditFrame> frames;
+  const std::vector<AuditFrame> frames = FramesOf(state);
   int transit = 0;
-  for (std::size_t i = 0; i < state.frames.size(); ++i) {
-    const MotionFrameTask& task = state.task->frames[i];
-    AuditFrame frame{task.t, task.phase, task.X_WB, state.frames[i].configuration, {}};
-    for (int f = 0; f < kNumFingers; ++f) frame.on[f] = task.contacts[f].on;
-    transit += task.phase == MotionPhase::kTransit ? 1 : 0;
-    if (task.phase == MotionPhase::kContact && (stages.empty() || stages.back() != frame.on)) {
+  for (const AuditFrame& frame : frames) {
+    transit += frame.phase == MotionPhase::kTransit ? 1 : 0;
+    if (frame.phase == MotionPhase::kContact && (stages.empty() || stages.back() != frame.on)) {
       stages.push_back(frame.on);
     }
-    frames.push_back(std::move(frame));
   }
   const std::array<bool, kNumFingers> first{true, true}, second{false, false, true, true};
   EXPECT_EQ(stages, (std::vector{first, second}));

@@ -157,6 +157,17 @@ bool IsStill(const AuditFrame& a, const AuditFrame& b) {
 
 }  // namespace
 
+std::vector<AuditFrame> FramesOf(const MotionState& state) {
+  std::vector<AuditFrame> frames;
+  for (std::size_t i = 0; i < state.frames.size(); ++i) {
+    const MotionFrameTask& task = state.task->frames[i];
+    AuditFrame frame{task.t, task.phase, task.X_WB, state.frames[i].configuration, {}};
+    for (int f = 0; f < kNumFingers; ++f) frame.on[f] = task.contacts[f].on;
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
 MotionAudit AuditMotion(const HandModel& hand, const Scene& scene,
                         const std::vector<AuditFrame>& frames, double slack) {
   MotionAudit audit;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/hand/hand_model.h"
-#include "app/motion/motion_task.h"
+#include "app/motion/hand_motion.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {
@@ -18,6 +18,9 @@ struct AuditFrame {
   HandConfiguration hand;
   std::array<bool, kNumFingers> on{};
 };
+
+/// The frames of a finished motion.
+std::vector<AuditFrame> FramesOf(const MotionState& state);
 
 /// The largest rates of a phase: wrist [m/s, rad/s, m/s^2, rad/s^2], joints [rad/s, rad/s^2].
 struct AuditRates {

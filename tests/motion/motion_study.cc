@@ -80,17 +80,6 @@ double FindClosing(const std::vector<TraceRow>& lift) {
   return lift.front().state.t + 0.1;
 }
 
-std::vector<AuditFrame> FramesOf(const MotionState& state) {
-  std::vector<AuditFrame> frames;
-  for (std::size_t i = 0; i < state.frames.size(); ++i) {
-    const MotionFrameTask& task = state.task->frames[i];
-    AuditFrame frame{task.t, task.phase, task.X_WB, state.frames[i].configuration, {}};
-    for (int f = 0; f < kNumFingers; ++f) frame.on[f] = task.contacts[f].on;
-    frames.push_back(std::move(frame));
-  }
-  return frames;
-}
-
 // As recorded. Bodies other than the object are where the row has them that has the object there.
 std::vector<AuditFrame> ReadFrames(const std::filesystem::path& directory, const World& world,
                                    const std::vector<TraceRow>& rows) {
