@@ -105,14 +105,17 @@ std::string Describe(const EvalConfig& config, std::int64_t items) {
 }
 
 void RequireRules(const StudySetup& setup) {
-  const auto require = [&](const Scene& scene) {
-    const std::vector<std::string> departures = RuleDepartures(scene, setup.planner);
+  const auto require = [](const std::string& where, const std::vector<std::string>& departures) {
     if (departures.empty()) return;
-    throw InputError(scene.file, "", "a scene and settings within the rules, as for every table",
+    throw InputError(where, "", "a scene and settings within the rules, as for every table",
                      departures.front());
   };
-  for (const Scene& scene : setup.scenes) require(scene);
-  for (const Ladder& ladder : setup.ladders) require(ladder.scene);
+  const auto require_scene = [&](const Scene& scene) {
+    require(scene.file, RuleDepartures(scene, setup.planner));
+  };
+  for (const Scene& scene : setup.scenes) require_scene(scene);
+  for (const Ladder& ladder : setup.ladders) require_scene(ladder.scene);
+  require("--set", RuleDepartures(setup.planner));  // of a study without scenes
 }
 
 nlohmann::json ReadItem(const fs::path& file) {

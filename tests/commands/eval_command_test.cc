@@ -198,6 +198,8 @@ TEST_F(EvalCommandTest, BadInputIsOneLineAndLeavesNothing) {
       {{"--out", "x", "--scenes", "ruler", "--set", "fingertips.friction=1.2"}, "within the rules"},
       {{"--out", "x", "--study", "ladder", "--scenes", "ruler", "--set", "fingertips.friction=1.2"},
        "within the rules"},
+      {{"--out", "x", "--study", "ik-order", "--set", "motion.wrist_speed=5"}, "within the rules"},
+      {{"--out", "x", "--study", "ik-order", "--scenes", "ruler"}, "--scenes: expected none"},
       {{"--out", "x", "--weights", "nowhere"}, "nowhere"},
       {{"--out", "/proc/nowhere", "--scenes", "ruler"}, "/proc/nowhere"},
       {{"merge", "--out", "x"}, "DIRS"},
