@@ -172,7 +172,7 @@ class Collector {
     const std::array<Rgba, 3> colors = {FromSrgb(0xD64534), FromSrgb(0x3AA346), FromSrgb(0x3567D6)};
     for (int axis = 0; axis < 3; ++axis) {
       RenderArrow arrow;
-      arrow.v_W = length * Vector3::Unit(axis);
+      arrow.v_W = length * scene_.R_WAxes.col(axis);
       arrow.radius = static_cast<float>(0.03 * length);
       arrow.color = colors[axis];
       AddArrow(arrow, false);

@@ -108,9 +108,12 @@ struct RenderScene {
   /// Towards the light; unset takes one from above the camera's left shoulder, so that shadows fall
   /// to the right. A film with a moving camera should set it.
   std::optional<Vector3> to_light_W;
+  Vector3 up_W = Vector3::UnitZ();  ///< upwards in the picture, and the floor's normal; unit length
   bool ground = true;  ///< a floor with a grid, its spacing told in the picture's corner
-  std::optional<double> ground_z;  ///< its height; unset takes the lowest point of the solid bodies
-  bool axes = true;                ///< the world frame's axes at the origin: x red, y green, z blue
+  /// Its height along `up_W`; unset takes the lowest point of the solid bodies.
+  std::optional<double> ground_z;
+  bool axes = true;                       ///< a frame's axes at the origin: x red, y green, z blue
+  Matrix3 R_WAxes = Matrix3::Identity();  ///< that frame: the world's own
 };
 
 }  // namespace pregrasp

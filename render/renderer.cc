@@ -20,6 +20,7 @@
 #include "render/overlay.h"
 #include "render/picture_pass.h"
 #include "render/shadow_pass.h"
+#include "render/upright.h"
 
 namespace pregrasp {
 namespace {
@@ -198,6 +199,13 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 
 Image Renderer::Render(const RenderScene& scene, const RenderConfig& config) {
   config.Validate();
+  if (!scene.up_W.allFinite() || std::abs(scene.up_W.norm() - 1.0) > 1e-6) {
+    throw InputError("picture", "up_W", "a direction of unit length", "another");
+  }
+  // What follows takes +z for up.
+  if (!scene.up_W.isApprox(Vector3::UnitZ(), 1e-9)) {
+    return Render(Rotated(scene, UprightRotation(scene.up_W)), config);
+  }
   const CameraView view = MakeCameraView(scene.camera, config.width, config.height);
   Impl& impl = *impl_;
   impl.context.MakeCurrent();

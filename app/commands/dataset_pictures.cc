@@ -70,7 +70,8 @@ RenderScene Compose(const SceneLabeler& labeler, const std::string& title, const
     picture.arrows.push_back({p_W + 0.05 * nhat_W, -0.05 * nhat_W, 0.002F, FingerColor(finger)});
     picture.labels.push_back({p_W + 0.05 * nhat_W, FingerName(finger), FingerColor(finger)});
   }
-  const Vector3 view_W = ChooseViewDirection(object_W, EnvironmentDistance(scene));
+  const Vector3 view_W =
+      ChooseViewDirection(object_W, EnvironmentDistance(scene), Vector3::UnitZ());
   picture.camera = FrameCamera(focus_W, view_W, static_cast<double>(kWidth) / kHeight);
   picture.axes = false;
   picture.caption.title = fmt::format("{:.2f}  {}", label.Value(), title);

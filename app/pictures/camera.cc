@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "render/upright.h"
+
 namespace pregrasp {
 namespace {
 
@@ -56,7 +58,8 @@ double VisibleShare(const std::vector<Patch>& patches, const Vector3& dir_W,
 
 }  // namespace
 
-Vector3 ChooseViewDirection(const TriangleMesh& mesh_W, const EnvironmentDistance& environment) {
+Vector3 ChooseViewDirection(const TriangleMesh& mesh_W, const EnvironmentDistance& environment,
+                            const Vector3& up_W) {
   constexpr double kAsGood = 0.03;  // of the visible share
   constexpr double kAzimuths_deg[] = {-60, -120, -20, -160, 30, 150, 75, 105};
   constexpr double kElevations_deg[] = {28, 45};
@@ -67,13 +70,15 @@ Vector3 ChooseViewDirection(const TriangleMesh& mesh_W, const EnvironmentDistanc
     for (std::size_t i = 0; i < kEnough; ++i) some.push_back(patches[i * patches.size() / kEnough]);
     patches = std::move(some);
   }
-  Vector3 best = Vector3::UnitZ();
+  const Matrix3 R_WU = UprightRotation(up_W).transpose();
+  Vector3 best = up_W;
   double best_share = -1.0;
   for (const double elevation_deg : kElevations_deg) {
     for (const double azimuth_deg : kAzimuths_deg) {
       const double azimuth = DegToRad(azimuth_deg), elevation = DegToRad(elevation_deg);
-      const Vector3 dir_W(std::cos(azimuth) * std::cos(elevation),
-                          std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
+      const Vector3 dir_W =
+          R_WU * Vector3(std::cos(azimuth) * std::cos(elevation),
+                         std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
       const double share = VisibleShare(patches, dir_W, environment);
       if (share > best_share + kAsGood) {
         best_share = share;

@@ -13,6 +13,7 @@
 #include "app/pictures/overlay.h"
 #include "render/hand_bodies.h"
 #include "render/palette.h"
+#include "render/upright.h"
 
 namespace pregrasp {
 namespace {
@@ -35,8 +36,10 @@ void PictureConfig::Validate() const { RenderConfig{width, height, quality}.Vali
 struct PictureMaker::Impl {
   Scene scene;
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  // one a body
-  Vector3 view_W;          // towards the viewer, in automatic pictures
-  MatrixX3 start_focus_W;  // what they show at least: one camera for a strip, while that does
+  Vector3 up_W;                                             // against gravity
+  Matrix3 R_UW;                                             // to a frame U in which that is +z
+  Vector3 view_U;          // towards the viewer, in automatic pictures
+  MatrixX3 start_focus_U;  // what they show at least: one camera for a strip, while that does
   double metres_per_newton = 0.0;
   double shrunk = 1.0;  // what arrows and points measure, of their size at full-size objects
 
@@ -60,10 +63,14 @@ PictureMaker::PictureMaker(Scene loaded) : impl_(std::make_unique<Impl>()) {
   }
   TriangleMesh object_W = *impl_->meshes[0];
   object_W.V = TransformPoints(scene.object().X_WB, object_W.V);
-  impl_->view_W = ChooseViewDirection(object_W, EnvironmentDistance(scene));
+  impl_->up_W = -scene.gravity.normalized();
+  impl_->R_UW = UprightRotation(impl_->up_W);
+  impl_->view_U =
+      impl_->R_UW * ChooseViewDirection(object_W, EnvironmentDistance(scene), impl_->up_W);
   const Vector3 size = object_W.V.colwise().maxCoeff() - object_W.V.colwise().minCoeff();
   impl_->shrunk = std::min(1.0, size.maxCoeff() / kFullSize);
-  impl_->start_focus_W = FocusAround(object_W.V, kFocusShare, kHeadroom * impl_->shrunk);
+  impl_->start_focus_U =
+      FocusAround(object_W.V * impl_->R_UW.transpose(), kFocusShare, kHeadroom * impl_->shrunk);
   // The forces of a push are a few times the weight, and end at the cap.
   constexpr double kLongArrow = 0.07;  // [m]
   const double large =
@@ -83,12 +90,15 @@ RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const
     Append(seen_W, TransformPoints(ghost.X_WO, meshes[0]->V));
   }
   Append(seen_W, overlay.focus_W);
-  RenderCamera at_start = FrameCamera(start_focus_W, view_W, aspect);
+  const MatrixX3 seen_U = seen_W * R_UW.transpose();
+  RenderCamera camera_U = FrameCamera(start_focus_U, view_U, aspect);
   constexpr double kBorder = 0.08;
-  if (IsInSight(at_start, seen_W, aspect, kBorder)) return at_start;
-  MatrixX3 focus_W = start_focus_W;
-  Append(focus_W, seen_W);
-  return FrameCamera(focus_W, view_W, aspect);
+  if (!IsInSight(camera_U, seen_U, aspect, kBorder)) {
+    MatrixX3 focus_U = start_focus_U;
+    Append(focus_U, seen_U);
+    camera_U = FrameCamera(focus_U, view_U, aspect);
+  }
+  return Rotated(camera_U, R_UW.transpose());
 }
 
 void PictureMaker::Impl::AddBodies(RenderScene& picture, const StepFacts& step,
@@ -239,6 +249,7 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
     impl_->AddArrow(picture, step.object().X_WB() * mass.p_BoBcm, false, mass.mass * scene.gravity,
                     NeutralColor(), "weight");
   }
+  picture.up_W = impl_->up_W;
   picture.axes = config.axes;
   picture.caption = {text.title, text.lines, text.footer, -1.0};
   return picture;

@@ -261,6 +261,35 @@ TEST(ForcesTest, PressedPulledRulerObeysTheSpringAndTheCone) {
   EXPECT_NEAR(supports[0].split.tangential, 0.3 * supports[0].split.normal, 1e-3);
 }
 
+// The picture of the ruler's scene at its start, all of it turned by `R`.
+Image DrawTurned(const Matrix3& R) {
+  JobSetup setup;
+  setup.scene = MakeRulerScene();
+  for (Body& body : setup.scene.bodies) body.X_WB = RigidTransform(R) * body.X_WB;
+  setup.scene.gravity = R * setup.scene.gravity;
+  Job job(setup, 1);
+  const Timeline timeline(job);
+  PictureConfig config;
+  config.width = 320;
+  config.height = 180;
+  config.quality = RenderQuality::kDraft;
+  config.axes = false;
+  const RenderScene picture =
+      PictureMaker(job.scene()).Compose(timeline.root().facts, timeline, {}, config);
+  return Renderer().Render(picture, {config.width, config.height, config.quality});
+}
+
+TEST(PictureMakerUpTest, UpInThePictureIsAgainstGravity) {
+  const Image upright = DrawTurned(Matrix3::Identity());
+  const Image turned = DrawTurned(Eigen::AngleAxisd(M_PI / 2, Vector3::UnitX()).matrix());
+  ASSERT_EQ(upright.rgb.size(), turned.rgb.size());
+  int differing = 0;
+  for (std::size_t i = 0; i < upright.rgb.size(); ++i) {
+    if (std::abs(upright.rgb[i] - turned.rgb[i]) > 8) ++differing;
+  }
+  EXPECT_LT(differing, static_cast<int>(upright.rgb.size() / 200));
+}
+
 TEST(IsInSightTest, KnowsThePyramidOfSight) {
   const RenderCamera camera{{0, -1, 0}, {0, 0, 0}, 90.0};
   const auto sees = [&](double x, double y, double z) {
@@ -285,9 +314,12 @@ TEST(ChooseViewDirectionTest, LooksWhereNothingIsInTheWay) {
   const TriangleMesh ruler = Tessellate(scene.object().shape);
   TriangleMesh ruler_W = ruler;
   ruler_W.V.rowwise() += scene.object().X_WB.translation().transpose();
-  EXPECT_LT(ChooseViewDirection(ruler_W, EnvironmentDistance(scene)).y(), 0.0);
+  const auto choose = [&] {
+    return ChooseViewDirection(ruler_W, EnvironmentDistance(scene), Vector3::UnitZ());
+  };
+  EXPECT_LT(choose().y(), 0.0);
   scene.bodies.push_back(wall);
-  EXPECT_GT(ChooseViewDirection(ruler_W, EnvironmentDistance(scene)).y(), 0.0);
+  EXPECT_GT(choose().y(), 0.0);
 }
 
 TEST_F(PictureMakerTest, TheWordsSayWhatDecidedTheMotion) {
