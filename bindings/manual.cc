@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "app/core/data_folder.h"
+#include "bindings/planner_options.h"
 
 namespace pregrasp {
 namespace {
@@ -74,7 +75,7 @@ const Manual& Manual::Get() {
     std::ifstream in(DataFolder() / "lua/meta/pregrasp.lua");
     std::stringstream text;
     text << in.rdbuf();
-    return Manual(text.str());
+    return Manual(text.str() + '\n' + OptionAnnotations());
   }();
   return manual;
 }

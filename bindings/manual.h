@@ -6,7 +6,7 @@
 
 namespace pregrasp {
 
-/// What lua/meta/pregrasp.lua says of a name, for help() and completion.
+/// What the annotations say of a name, for help() and completion.
 struct ManualEntry {
   struct Part {  ///< a field of a table or class, or a parameter of a function
     std::string name, type, text;
@@ -24,7 +24,8 @@ struct ManualEntry {
 /// The annotations as data. Their form is held by a test.
 class Manual {
  public:
-  /// That of the program, read when first asked for; empty if the file is gone.
+  /// That of the program: lua/meta/pregrasp.lua, read when first asked for, with the options of the
+  /// planner's stages; these alone if the file is gone.
   static const Manual& Get();
 
   explicit Manual(const std::string& text);

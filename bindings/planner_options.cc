@@ -118,7 +118,6 @@ std::string TypeText(const PlannerSetting& setting) {
   return words.empty() ? "boolean" : words;
 }
 
-// As lua/meta/pregrasp.lua has it.
 std::string OptionAnnotation(const PlannerSetting& setting) {
   std::string text =
       fmt::format("---@field {}? {} {}", setting.key(), TypeText(setting), setting.meaning);
@@ -131,14 +130,13 @@ std::string OptionAnnotation(const PlannerSetting& setting) {
 
 }  // namespace
 
-std::vector<std::string> OptionAnnotations(const Schema& schema) {
-  std::vector<std::string> lines;
+std::string OptionAnnotations() {
+  std::string text = "---@meta pregrasp\n";
   for (const StageKeys* keys : AllKeys()) {
-    if (&keys->schema != &schema) continue;
-    for (const PlannerSetting* setting : keys->settings)
-      lines.push_back(OptionAnnotation(*setting));
+    text += "\n---@class " + keys->schema.name + '\n';
+    for (const PlannerSetting* setting : keys->settings) text += OptionAnnotation(*setting) + '\n';
   }
-  return lines;
+  return text;
 }
 
 GraphOptions LuaValue<GraphOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {

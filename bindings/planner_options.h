@@ -63,8 +63,8 @@ struct LuaValue<MotionOptions> {
 
 std::vector<const Schema*> StageOptionSchemas();
 
-/// The lines of the manual (lua/meta/pregrasp.lua) for the options of one of those schemas, from
-/// the table of settings.
-std::vector<std::string> OptionAnnotations(const Schema& schema);
+/// Those options as LuaCATS annotations, a class for each schema, from the table of settings: the
+/// rest of the manual (lua/meta/pregrasp.lua).
+std::string OptionAnnotations();
 
 }  // namespace pregrasp

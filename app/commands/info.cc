@@ -13,6 +13,7 @@
 #include "app/job/planner_settings.h"
 #include "app/recording/build_info.h"
 #include "bindings/machine.h"
+#include "bindings/planner_options.h"
 #include "bindings/scene_file.h"
 #include "render/renderer.h"
 
@@ -81,13 +82,22 @@ int Info() {
 }  // namespace
 
 void AddInfo(const Subcommand& app, Action& action) {
-  auto settings = std::make_shared<bool>(false);
+  auto settings = std::make_shared<bool>(false), annotations = std::make_shared<bool>(false);
   const Subcommand command =
       app.AddCommand("info", "Versions, OpenGL renderer, weights, processor");
   command.AddFlag("--settings", *settings,
                   "Instead: every setting that --set takes beside the scene's, with its default");
-  command.OnChosen([settings, &action] {
-    action = [settings] { return *settings ? PrintSettings() : Info(); };
+  command.AddFlag(
+      "--annotations", *annotations,
+      "Instead: the options of the planner's stages in Lua, as annotations for editors");
+  command.OnChosen([settings, annotations, &action] {
+    action = [settings, annotations] {
+      if (*annotations) {
+        fmt::print("{}", OptionAnnotations());
+        return 0;
+      }
+      return *settings ? PrintSettings() : Info();
+    };
   });
 }
 

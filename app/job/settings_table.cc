@@ -212,8 +212,11 @@ Settings CertifySettings() {
   return {
       {"certify.hold_seconds", Real(0.0, 30.0, "s"), "the last targets are kept this long",
        FIELD(certify.hold_seconds), AtLeast(1.5, holds)},
-      {"certify.slow", Real(1.0, 10.0),
-       "stages and transfers take this many times as long as planned", FIELD(certify.slow)},
+      {"certify.slow",
+       Real(1.0, 10.0),
+       "stages and transfers take this many times as long as planned",
+       FIELD(certify.slow),
+       {}},
       {"certify.max_hold_shift", Real(0.0, 1.0, "m"), "the object may move this far in the hold",
        FIELD(certify.max_hold_shift), AtMost(0.01, holds)},
       {"certify.max_hold_turn_deg", Real(0.0, 180.0, "deg"),

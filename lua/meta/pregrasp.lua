@@ -1,6 +1,8 @@
 ---@meta pregrasp
 -- The manual of `require "pregrasp"`, in LuaCATS: editors with lua-language-server complete and check
--- by it. A test holds every name here against what the program registers, both ways.
+-- by it. A test holds every name here against what the program registers, both ways. The options of the
+-- planner's stages (GraphOptions, OptimizeOptions, ..) are the table of settings': the build writes them to
+-- build/release/lua/options.lua (`pregrasp info --annotations`).
 --
 -- Units are SI and radians; a name ending in _mm, _deg or _N says otherwise. A point {x, y, z} is in
 -- the frame that its name ends in: p_OC is the contact C in the object's frame O, p_W is in the world.
@@ -71,7 +73,7 @@ function pregrasp.sphere(size) end
 
 ---A closed triangle mesh, or the union of several in one file: mesh{"cup.stl", scale = 0.001}. Looked for beside the
 ---scene first.
----@param file FileTable
+---@param file MeshFileTable
 ---@return Shape
 function pregrasp.mesh(file) end
 
@@ -135,6 +137,10 @@ function pregrasp.union(parts) end
 
 ---@class FileTable the file's name is the first entry
 ---@field scale? number 1; 0.001 for a file in millimetres
+
+---@class MeshFileTable the file's name is the first entry
+---@field scale? number 1; 0.001 for a file in millimetres
+---@field repair? boolean drop faces given twice, merge corners that lie beside each other, close tiny holes; false
 
 ---@class Shape
 
@@ -294,13 +300,6 @@ function Session:mesh(options) end
 ---@return Graph
 function Session:graph(options) end
 
----@class GraphOptions
----@field points? integer of the object's cloud; the same for all graphs of a session, 64 to 4096; 512
----@field triangles? integer of the contact mesh, 12 to 200, even; 40
----@field convex_share? number from which share of its hull's volume on a shape is meshed by its hull, 0.01 to 1; 0.97
----@field samples? integer placements a node for each of thumb, index and both, 1 to 100; 5
----@field top_percent? number percent of the nodes that each score keeps, 0.01 to 100; 5
-
 -- The planner, stage by stage. Each object is a stepper: what it was before each step is kept, and back()
 -- goes there exactly. A step has an id, which is on its picture, in the log and here. Numbers of nodes
 -- and triangles are those of pictures and log, from 0: triangle t is mesh.triangles[t + 1].
@@ -323,9 +322,6 @@ function Graph:score() end
 ---The pruning steps that are still to do.
 ---@param options? PruneOptions
 function Graph:prune(options) end
-
----@class PruneOptions
----@field top_percent? number percent of the nodes that each score keeps, 0.01 to 100; 5
 
 ---One of three steps: the best by s_c stay, the best by s_n stay, edges are built.
 ---@param nodes? integer at most so many nodes of it: prune_step(1) is a node at a time
@@ -361,10 +357,6 @@ function Graph:neighbors(id) end
 ---@param options? PathsOptions
 ---@return Paths
 function Graph:paths(options) end
-
----@class PathsOptions
----@field stages? integer contact states in a path, 1 to 8; 2
----@field order? "explore"|"paper" explore: best first among paths that differ; paper: by the sum of scores alone; explore
 
 ---Takes steps back.
 ---@param steps? integer 1
@@ -436,34 +428,6 @@ local Path = {}
 ---@return Optimizer
 function Path:optimize(options) end
 
----@class OptimizeOptions
----@field samples? integer rollouts an iteration, 4 to 4096; 48
----@field iterations? integer iterations at most, 1 to 1000; 15
----@field sigma? number standard deviation of the noise in the first iteration, 1e-06 to 100; 1.2
----@field final_sigma? number of the noise in the last iteration, 1e-06 to 100; 0.3
----@field temperature? number lambda over the standard deviation of the better half's costs, 1e-06 to 1e+06; 0.5
----@field patience? integer iterations without progress after which it ends, from the first rise on, 1 to 1000; 5
----@field rise? number the first rise: the best reward is above that of doing nothing by this, 0 to 100; 0.02
----@field proposals? number share of the samples that are steady pushes until the first rise, then a quarter of that, 0 to 1; 0.5
----@field progress? number what counts as progress: the best cost falls by this share of the score's spread, 0 to 100; 0.1
----@field max_travel? number of a target in a knot, each axis, 0 to 1 m; 0.03
----@field stage_seconds? number of one contact stage, 0.05 to 10 s; 0.8
----@field transfer_seconds? number before a finger is put on a new contact, and as long as its way there takes, 0 to 30 s; 0.3
----@field transfer_speed? number of a fingertip on its way to a new contact, 0.01 to 10 m/s; 0.15
----@field knots? integer force targets a stage; a fork keeps it, 1 to 100; 4
----@field hold_seconds? number the last targets are held before the last score, 0 to 30 s; 1.5
----@field room? number weight: share of contact sets that hold and that the surroundings leave free at the end, 0 to 1000; 1
----@field no_contact? number weight: no finger ever touches, 0 to 1000; 0.5
----@field slip? number tie-breaker, over the score's spread: share of the contact time at the cone's limit, 0 to 1000; 0.25
----@field effort? number tie-breaker: mean force over the largest one allowed, 0 to 1000; 0.1
----@field unrest? number tie-breaker: speed when the hold ends, 0 to 1000; 0.3
----@field speed? number tie-breaker: peak speed above 0.35 m/s, 0 to 1000; 0.8
----@field tip_overlap? number weight: a fingertip in the surroundings, by the share of a fingertip's radius, 0 to 1000; 1
----@field tip_spacing? number weight: the two tips overlap, by the share of a fingertip's radius, 0 to 1000; 1
----@field hold? number weight: the object's way in the hold over what a certificate allows, from half of it on, 0 to 1000; 1
----@field haste? number weight: a tip that touches is over 0.8 m/s or 8 m/s^2, by the excess, at most 1, 0 to 1000; 2
----@field fall? number weight: the object fell out of the scene, 0 to 1000; 1.5
-
 ---A picture of the path on the contact mesh.
 ---@param options? ShotOptions
 function Path:shot(options) end
@@ -496,10 +460,6 @@ function Optimizer:step() end
 ---@return Screening
 function Optimizer:screen(options) end
 
----@class ScreenOptions
----@field samples? integer rollouts an iteration, 4 to 4096; 16
----@field iterations? integer of a path in a round, 1 to 1000; 4
-
 ---@class Screening
 ---@field round integer
 ---@field iterations integer of this round
@@ -523,18 +483,14 @@ function Optimizer:fork(options) end
 ---@return Rollout[]
 function Optimizer:rollouts() end
 
----A plan simulated through the full Simbody model, and again at half the time step.
+---A plan simulated through the full Simbody model, and again at half the time step: one of those kept because their
+---ends differ, 1 the best; or one made by hand, a list of stages: { { index = { p_OC = {..}, p_WTargets = { {..} } } }, .. }.
+---Of a finger made by hand p_OC (not while it stays on from the stage before) and p_WTargets, one a knot or one for all,
+---are needed; p_OC goes to the nearest place where a contact may lie. Trajectory.stages, changed or not, is such a list.
 ---@param options? CertifyOptions
----@param plan? integer of those kept because their ends differ, 1 the best; 1
+---@param plan? integer|PlanStage[] 1
 ---@return Trajectory
 function Optimizer:certify(options, plan) end
-
----@class CertifyOptions
----@field hold_seconds? number the last targets are kept this long, 0 to 30 s, within the rules at least 1.5; 1.5
----@field slow? number stages and transfers take this many times as long as planned, 1 to 10; 1
----@field max_hold_shift? number the object may move this far in the hold, 0 to 1 m, within the rules at most 0.01; 0.01
----@field max_hold_turn_deg? number the object may turn this far in the hold, 0 to 180 deg, within the rules at most 5; 5
----@field max_unresolved? number overlap that the contact solver may leave unfinished, over all steps, 0 to 1 m, within the rules at most 0.001; 0.001
 
 ---A picture of the last iteration: where its best plans leave the object.
 ---@param options? ShotOptions
@@ -612,30 +568,6 @@ local Trajectory = {}
 ---@return Grasps
 function Trajectory:grasps(options) end
 
----@class GraspsOptions
----@field samples? integer samples of the generator, 1 to 500, within the rules at most 20; 20
----@field draws? integer draws of a sample at most, until one has forces, 1 to 1000; 24
----@field raw_tests? integer draws of a sample with forces that are put to inverse kinematics at most, 1 to 1000; 3
----@field points? integer places a finger that are scored, for what the generator is to complete, 1 to 10000; 400
----@field pairs? integer placements of both fingers that are scored, 0 to 50000; 4000
----@field spacing? number by which the placements of two samples differ somewhere, 0 to 1 m; 0.01
----@field pool? integer placements of the best score for each sample, of which those with most room are tried, 1 to 1000; 10
----@field pilots? integer placements tried for each sample: those that a grasp was found for are completed, 1 to 100; 3
----@field f_min? number smallest normal force of every finger, 0 to 100 N, within the rules at least 0.5; 0.5
----@field may_drop? boolean ring and little may be left out; true
----@field max_refinement? number how far a contact may be moved, 0 to 0.1 m, within the rules at most 0.01; 0.01
----@field max_solves? integer moved sets of a sample that are put to inverse kinematics, 0 to 1000; 24
----@field patience? integer rounds after which refinement ends where none is feasible yet, 1 to 1000; 8
----@field max_stiffness_tests? integer sets of each sample tested for whether they are stiff enough to lift; 0: what is feasible will do, 0 to 10000; 40
----@field max_probes? integer contact sets drawn where no sample holds: if none does, nothing is refined, 0 to 1e+06; 40000
----@field search_sets? integer contact sets that the search draws beside the samples; 0 does not search, 0 to 1e+06; 20000
----@field search_solves? integer of those, put to inverse kinematics, 1 to 10000; 192
----@field search_found? integer grasps after which it ends, 1 to 1000; 8
----@field starts? integer restarts of inverse kinematics, 1 to 1000; 6
----@field tip_tolerance? number a fingertip may miss its contact by this, 1e-04 to 0.01 m, within the rules at most 5e-04; 5e-04
----@field max_cone_deg? number between a distal axis and the inward normal, 1 to 180 deg, within the rules at most 60; 60
----@field contact_depth? number a contacting distal link may enter the object by this, 0 to 0.01 m, within the rules at most 0.001; 0.001
-
 ---A body at its end.
 ---@param name string
 ---@return Body
@@ -701,23 +633,6 @@ local Grasp = {}
 ---@param options? MotionOptions
 ---@return Motion
 function Grasp:motion(options) end
-
----@class MotionOptions
----@field order? "reverse"|"forward" of keyframes: reverse solves the last first; reverse
----@field fps? number frames a second, 1 to 120 Hz, within the rules at least 30; 30
----@field approach_distance? number how far off the palm starts, 0 to 1 m, within the rules at least 0.2; 0.2
----@field keyframe_starts? integer restarts of inverse kinematics at a keyframe, 1 to 1000; 25
----@field frame_starts? integer restarts of inverse kinematics in between, 1 to 1000; 4
----@field smoothing_iterations? integer of smoothing the whole motion, at most, 1 to 1000; 40
----@field pace? number share of the limits at which free parts are gone through, 0.1 to 1; 0.9
----@field wrist_speed? number limit, 0.01 to 10 m/s, within the rules at most 1; 1
----@field wrist_turn_speed? number limit, 0.01 to 30 rad/s, within the rules at most 3; 3
----@field wrist_acceleration? number limit, 0.1 to 100 m/s^2, within the rules at most 5; 5
----@field wrist_turn_acceleration? number limit, 0.1 to 1000 rad/s^2, within the rules at most 20; 20
----@field joint_acceleration? number limit; the joints' speeds are limited by the hand's own, 0.1 to 1000 rad/s^2, within the rules at most 40; 40
----@field tip_tolerance? number a fingertip may miss its contact by this before a frame counts as loosened, 1e-04 to 0.01 m, within the rules at most 5e-04; 5e-04
----@field max_cone_deg? number between a distal axis and the inward normal, likewise, 1 to 180 deg, within the rules at most 60; 60
----@field contact_depth? number a contacting distal link may enter the object by this, likewise, 0 to 0.01 m, within the rules at most 0.001; 0.001
 
 ---A picture of the hand in it.
 ---@param options? ShotOptions
@@ -951,6 +866,7 @@ function pregrasp.ik(options) end
 ---@field scene? Session without one only the hand itself is in the way
 ---@field seed? integer 1
 ---@field max_starts? integer initial postures tried, 20
+---@field near? IkResult begin with this hand and stay near it: an answer for contacts a little further on
 
 ---@class IkContacts
 ---@field thumb? IkContact
