@@ -43,6 +43,7 @@ const Schema kBoxKeys{"BoxTable", {"x", "y", "z"}};
 const Schema kRoundKeys{"CylinderTable", {"r", "h"}};
 const Schema kSphereKeys{"SphereTable", {"r"}};
 const Schema kFileKeys{"FileTable", {"scale"}};
+const Schema kMeshFileKeys{"MeshFileTable", {"scale", "repair"}};
 
 const char kOneSceneOnly = 0;  // registry key, by address
 
@@ -102,10 +103,18 @@ ShapePtr MakeSphere(OneTable table) {
   return MakeShape(table.L, Sphere{ReadSizes(table.L, kSphereKeys)[0]});
 }
 
-template <typename FileShape>
-ShapePtr MakeFileShape(OneTable table) {
+ShapePtr MakeMesh(OneTable table) {
+  const Fields fields(table.L, 1, kMeshFileKeys, "", "", 1);
+  Mesh shape;
+  shape.file = fields.Positional<std::string>(1, "file");
+  shape.scale = fields.Optional<double>("scale", 1.0);
+  shape.repair = fields.Optional<bool>("repair", false);
+  return MakeShape(table.L, std::move(shape));
+}
+
+ShapePtr MakeCloud(OneTable table) {
   const Fields fields(table.L, 1, kFileKeys, "", "", 1);
-  FileShape shape;
+  Cloud shape;
   shape.file = fields.Positional<std::string>(1, "file");
   shape.scale = fields.Optional<double>("scale", 1.0);
   return MakeShape(table.L, std::move(shape));
@@ -280,21 +289,17 @@ CameraConfig ReadCamera(lua_State* L, const Fields& owner, const std::string& ke
 
 const std::vector<FunctionInfo>& SceneConstructors() {
   static const std::vector<FunctionInfo> constructors = {
-      Function<&MakeScene>("scene", "table"),
-      Function<&MakeBox>("box", "size"),
-      Function<&MakeCylinder>("cylinder", "size"),
-      Function<&MakeCapsule>("capsule", "size"),
-      Function<&MakeSphere>("sphere", "size"),
-      Function<&MakeFileShape<Mesh>>("mesh", "file"),
-      Function<&MakeFileShape<Cloud>>("cloud", "file"),
-      Function<&MakeUnion>("union", "parts"),
+      Function<&MakeScene>("scene", "table"),      Function<&MakeBox>("box", "size"),
+      Function<&MakeCylinder>("cylinder", "size"), Function<&MakeCapsule>("capsule", "size"),
+      Function<&MakeSphere>("sphere", "size"),     Function<&MakeMesh>("mesh", "file"),
+      Function<&MakeCloud>("cloud", "file"),       Function<&MakeUnion>("union", "parts"),
   };
   return constructors;
 }
 
 std::vector<const Schema*> SceneSchemas() {
   return {&kSceneKeys, &kBodyKeys,  &kFingertipKeys, &kCameraKeys, &kPlacedKeys,
-          &kBoxKeys,   &kRoundKeys, &kSphereKeys,    &kFileKeys};
+          &kBoxKeys,   &kRoundKeys, &kSphereKeys,    &kFileKeys,   &kMeshFileKeys};
 }
 
 std::vector<const ClassInfo*> SceneClasses() { return {&kShapeClass, &kSceneClass}; }

@@ -6,10 +6,13 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/commands/check_mesh.h"
 #include "app/commands/commands.h"
 #include "app/core/data_folder.h"
+#include "app/core/error.h"
 #include "app/core/text.h"
 #include "app/core/thread_pool.h"
 #include "app/job/job.h"
@@ -24,6 +27,7 @@ struct CheckOptions {
   std::vector<std::string> settings;
   std::uint64_t seed = 1;
   bool no_grasps = false;
+  MeshCheck mesh;
 };
 
 const char* SeverityName(CheckFinding::Severity severity) {
@@ -31,8 +35,24 @@ const char* SeverityName(CheckFinding::Severity severity) {
   return kNames[static_cast<int>(severity)];
 }
 
+int CheckMeshFile(const CheckOptions& options) {
+  for (const auto& [flag, given] : {std::pair("--set", !options.settings.empty()),
+                                    std::pair("--no-grasps", options.no_grasps)}) {
+    if (given) throw InputError(flag, "", "a scene, a Lua file", options.scene);
+  }
+  MeshCheck mesh = options.mesh;
+  mesh.file = options.scene;
+  return CheckMesh(mesh);
+}
+
 // One line a finding; the first error is the one line on stderr.
 int Check(const CheckOptions& options) {
+  if (IsMeshFile(options.scene)) return CheckMeshFile(options);
+  for (const auto& [flag, given] :
+       {std::pair("--scale", options.mesh.scale != 1.0), std::pair("--repair", options.mesh.repair),
+        std::pair("--picture", !options.mesh.picture.empty())}) {
+    if (given) throw InputError(flag, "", "a mesh file (.obj, .stl, .ply, ..)", options.scene);
+  }
   std::vector<Setting> settings;
   for (const std::string& setting : options.settings) settings.push_back(ParseSetting(setting));
   const Scene scene = LoadSceneFile(options.scene, settings);
@@ -65,13 +85,22 @@ int Check(const CheckOptions& options) {
 
 void AddCheck(const Subcommand& app, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  const Subcommand command = app.AddCommand(
-      "check", "Check a scene: overlaps, not at rest, implausible units, rules, graspable already");
-  command.Add("SCENE", options->scene, "The scene, a Lua file").Required();
+  const Subcommand command = app.AddCommand("check",
+                                            "Check a scene: overlaps, not at rest, implausible "
+                                            "units, rules, graspable already; or a mesh "
+                                            "file: closed or where not");
+  command.Add("SCENE", options->scene, "The scene, a Lua file; or a mesh file").Required();
   command.Add("--set", options->settings, "Change a value: object.mass=0.2").OneAtATime();
   command.AddSeed(options->seed, "Of the search for grasps");
   command.AddFlag("--no-grasps", options->no_grasps,
                   "Do not ask whether the object can be grasped where it stands");
+  command.Add("--scale", options->mesh.scale, "Of a mesh file: 0.001 for millimetres")
+      .ShowDefault()
+      .Within({1e-6, 1e6});
+  command.AddFlag("--repair", options->mesh.repair,
+                  "Of a mesh file: mend what repair = true in a scene would");
+  command.Add("--picture", options->mesh.picture,
+              "Of a mesh file: FILE.png that shows it, open edges in red");
   command.OnChosen([options, &action] { action = [options] { return Check(*options); }; });
 }
 

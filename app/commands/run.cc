@@ -11,6 +11,7 @@
 #include "app/commands/progress.h"
 #include "app/core/data_folder.h"
 #include "app/core/interrupt.h"
+#include "app/job/check.h"
 #include "app/job/planner_settings.h"
 #include "app/job/run_policy.h"
 #include "bindings/scene_file.h"
@@ -60,6 +61,9 @@ int Run(const RunOptions& options) {
   ApplyPlannerSettings(config, settings);
   RequireNoSettingsLeft(settings, PlannerRoots());
   config.Validate();
+  for (const CheckFinding& repair : ListRepairs(scene)) {
+    fmt::print(stderr, "{}: note: {}\n", repair.where, repair.message);
+  }
   for (const std::string& departure : RuleDepartures(scene, config)) {
     fmt::print(stderr, "{}: warning: {}\n", options.scene, departure);
   }

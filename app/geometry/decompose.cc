@@ -214,7 +214,7 @@ struct LeafPieces {
  private:
   void Add(const TriangleMesh& mesh, const std::string& file) const {
     for (TriangleMesh& hull : DecomposeOnce(mesh, config)) {
-      pieces.push_back({Mesh{file, 1.0, std::move(hull)}, X_BP});
+      pieces.push_back({Mesh{file, 1.0, std::move(hull), false, ""}, X_BP});
     }
   }
 };

@@ -12,6 +12,7 @@
 #include "app/geometry/read_mesh.h"
 #include "app/geometry/reconstruct.h"
 #include "app/geometry/solids.h"
+#include "app/geometry/split_edges.h"
 
 namespace pregrasp {
 namespace {
@@ -71,8 +72,10 @@ void RequireClosed(const TriangleMesh& mesh, const std::string& name, const std:
     const std::vector<Hole> holes = FindHoles(mesh);
     const AlignedBox& largest = holes.front().bounds;
     const Vector3 at = (1e4 * largest.center()).array().round().matrix() * 1e-4;
+    const bool tiny =
+        largest.sizes().maxCoeff() <= kTinyHole * BoundsOfPoints(mesh.V).diagonal().norm();
     throw InputError(
-        where, field, "a closed mesh",
+        where, field, tiny ? "a closed mesh, or repair = true" : "a closed mesh",
         fmt::format("{}, which has {}: {} about ({:.4g}, {:.4g}, {:.4g}) m, {:.2g} m "
                     "across",
                     name, Count(defects.open_edges, "open edge", "open edges"),
@@ -82,7 +85,7 @@ void RequireClosed(const TriangleMesh& mesh, const std::string& name, const std:
   }
   if (defects.crowded_edges > 0 && defects.repeated_faces > 0) {
     throw InputError(
-        where, field, "a mesh with each face once",
+        where, field, "a mesh with each face once, or repair = true",
         fmt::format("{}, which has {}, turned round or not", name,
                     Count(defects.repeated_faces, "face given twice", "faces given twice")));
   }
@@ -148,11 +151,12 @@ struct Loader {
   Shape LoadMesh(const Mesh& mesh) const {
     const std::string name = '"' + mesh.file + '"';
     const TriangleMesh raw = Read(name, [&] { return ReadTriangles(directory / mesh.file); });
-    const std::vector<TriangleMesh> solids =
-        RepairMesh({mesh.scale * raw.V, raw.F}, name, where, field);
+    Mending mending;
+    const std::vector<TriangleMesh> solids = RepairMesh({mesh.scale * raw.V, raw.F}, name, where,
+                                                        field, mesh.repair ? &mending : nullptr);
     Union whole;
     for (const TriangleMesh& solid : solids) {
-      whole.parts.push_back({Mesh{mesh.file, mesh.scale, solid}});
+      whole.parts.push_back({Mesh{mesh.file, mesh.scale, solid, mesh.repair, mending.Text()}});
     }
     if (solids.size() == 1) return whole.parts.front().shape;
     return whole;
@@ -203,7 +207,8 @@ void FillMassProperties(Body& body) {
 }  // namespace
 
 std::vector<TriangleMesh> RepairMesh(const TriangleMesh& raw, const std::string& name,
-                                     const std::string& where, const std::string& field) {
+                                     const std::string& where, const std::string& field,
+                                     Mending* mending) {
   RequireFinitePoints(raw.V, name, where, field);
   RequireSaneSize(raw.V, name, where, field);
   const double size = BoundsOfPoints(raw.V).diagonal().norm();
@@ -218,6 +223,8 @@ std::vector<TriangleMesh> RepairMesh(const TriangleMesh& raw, const std::string&
   }
   KeepPartsApart(raw, mesh);
   DropInnerWalls(mesh);
+  if (mending != nullptr && !FindDefects(mesh).closed()) *mending = MendMesh(mesh);
+  if (FindDefects(mesh).crowded_edges > 0) SplitCrowdedEdges(mesh);
   RequireClosed(mesh, name, where, field);
   if (!OrientConsistently(mesh)) {
     throw InputError(where, field, "a mesh with an inside and an outside",

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/geometry/mend_mesh.h"
 #include "app/scene/scene.h"
 
 namespace pregrasp {
@@ -23,12 +24,15 @@ void LoadShape(Shape& shape, const std::filesystem::path& directory, const std::
                const std::string& field);
 
 /// Makes a mesh as the rest of pregrasp needs it from triangles as they come: welds vertices,
-/// leaves out walls between solids that share corners, checks that it is closed, and turns it
+/// leaves out walls between solids that share corners, takes solids apart that meet in an edge,
+/// checks that it is closed, and turns it
 /// outward; a component inside another is a cavity.
 /// @param name  what messages call it, with its quotes: "\"cup.obj\"".
+/// @param mending  where given, the mesh is mended (MendMesh), and this says how.
 /// @return one mesh, or, where solids touch or overlap, those whose union it is (SeparateSolids).
 /// @throws InputError
 std::vector<TriangleMesh> RepairMesh(const TriangleMesh& raw, const std::string& name,
-                                     const std::string& where, const std::string& field);
+                                     const std::string& where, const std::string& field,
+                                     Mending* mending = nullptr);
 
 }  // namespace pregrasp

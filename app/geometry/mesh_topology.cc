@@ -157,12 +157,17 @@ MeshDefects FindDefects(const TriangleMesh& mesh) {
   return defects;
 }
 
-std::vector<Hole> FindHoles(const TriangleMesh& mesh) {
+std::vector<std::pair<int, int>> FindOpenEdges(const TriangleMesh& mesh) {
   std::vector<std::pair<int, int>> edges;
   const std::vector<EdgeSide> sides = ListEdgeSides(mesh);
   ForEachEdge(sides, [&](std::size_t begin, std::size_t end) {
     if (end - begin == 1) edges.emplace_back(sides[begin].low, sides[begin].high);
   });
+  return edges;
+}
+
+std::vector<Hole> FindHoles(const TriangleMesh& mesh) {
+  const std::vector<std::pair<int, int>> edges = FindOpenEdges(mesh);
   // The root of a vertex stands for its hole.
   std::vector<int> parent(mesh.V.rows());
   std::iota(parent.begin(), parent.end(), 0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "app/geometry/bounds.h"
@@ -28,6 +29,9 @@ struct MeshDefects {
   bool closed() const { return open_edges == 0 && crowded_edges == 0 && turned_edges == 0; }
 };
 MeshDefects FindDefects(const TriangleMesh& mesh);
+
+/// The corners of each open edge.
+std::vector<std::pair<int, int>> FindOpenEdges(const TriangleMesh& mesh);
 
 /// Open edges that hang together.
 struct Hole {

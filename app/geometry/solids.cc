@@ -64,7 +64,7 @@ class Components {
   }
 
   const fcl::CollisionGeometryd* Geometry(int c) {
-    if (!geometry_[c]) geometry_[c] = MakeFclShape(Mesh{"", 1.0, parts_[c]});
+    if (!geometry_[c]) geometry_[c] = MakeFclShape(Mesh{"", 1.0, parts_[c], false, ""});
     return geometry_[c].get();
   }
 

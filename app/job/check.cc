@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "app/dynamics/world.h"
 #include "app/geometry/cloud_doubts.h"
@@ -42,6 +43,7 @@ class Checker {
       Add(Severity::kWarning, WhereOf(departure),
           departure + ": the results count as outside the rules");
     }
+    for (CheckFinding& repair : ListRepairs(scene_)) findings_.push_back(std::move(repair));
     std::stable_sort(
         findings_.begin(), findings_.end(),
         [](const CheckFinding& a, const CheckFinding& b) { return a.severity > b.severity; });
@@ -160,6 +162,20 @@ class Checker {
 };
 
 }  // namespace
+
+std::vector<CheckFinding> ListRepairs(const Scene& scene) {
+  std::vector<CheckFinding> repairs;
+  for (const Body& body : scene.bodies) {
+    std::set<std::string> told;  // the parts of one file say the same
+    ForEachLeaf(body.shape, RigidTransform::Identity(), [&](const Shape& leaf, const auto&) {
+      const auto* mesh = std::get_if<Mesh>(&leaf);
+      if (mesh == nullptr || mesh->repaired.empty() || !told.insert(mesh->file).second) return;
+      repairs.push_back({Severity::kNote, body.where,
+                         fmt::format("\"{}\" was repaired: {}", mesh->file, mesh->repaired)});
+    });
+  }
+  return repairs;
+}
 
 std::vector<CheckFinding> CheckScene(const Scene& scene) { return Checker(scene).Run(); }
 

@@ -19,10 +19,13 @@ struct CheckFinding {
   std::string message;  ///< one sentence, with numbers and units
 };
 
+/// What of a body's mesh files was mended when they were loaded (`repair = true`), as notes.
+std::vector<CheckFinding> ListRepairs(const Scene& scene);
+
 /// Looks for what validation cannot see: bodies that overlap (by 0.05 mm or more), that float or do
 /// not stay at rest for 1 s, physics that does not converge there, sizes and densities that look
 /// like another unit, clouds whose points end along a rim, departures from the project's physical
-/// rules. Errors first.
+/// rules; and lists repairs. Errors first.
 /// @param scene  loaded.
 std::vector<CheckFinding> CheckScene(const Scene& scene);
 

@@ -55,7 +55,11 @@ class ShapeWriter {
   Json operator()(const Mesh& mesh) const {
     return {{"kind", "mesh"},
             {"file", Write(".obj", mesh.mesh)},
-            {"source", {{"file", mesh.file}, {"scale", mesh.scale}}}};
+            {"source",
+             {{"file", mesh.file},
+              {"scale", mesh.scale},
+              {"repair", mesh.repair},
+              {"repaired", mesh.repaired}}}};
   }
   Json operator()(const Cloud& cloud) const {
     return {{"kind", "cloud"},
@@ -102,8 +106,10 @@ Shape ReadShape(const JsonReader& reader, const std::filesystem::path& directory
   if (kind == "capsule") return Capsule{reader["radius"].Number(), reader["height"].Number()};
   if (kind == "sphere") return Sphere{reader["radius"].Number()};
   if (kind == "mesh") {
-    return Mesh{reader["source"]["file"].Text(), reader["source"]["scale"].Number(),
-                ReadMesh(reader["file"], directory)};
+    const JsonReader source = reader["source"];
+    return Mesh{source["file"].Text(), source["scale"].Number(),
+                ReadMesh(reader["file"], directory), source["repair"].Bool(),
+                source["repaired"].Text()};
   }
   if (kind == "cloud") {
     return Cloud{reader["source"]["file"].Text(), reader["source"]["scale"].Number(),

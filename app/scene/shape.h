@@ -42,7 +42,9 @@ struct Sphere {
 struct Mesh {
   std::string file;  ///< as the user wrote it
   double scale = 1.0;
-  TriangleMesh mesh;  ///< what it holds: outward, closed, already scaled; filled in by LoadShape
+  TriangleMesh mesh;     ///< what it holds: outward, closed, already scaled; filled in by LoadShape
+  bool repair = false;   ///< whether what the file has wrong may be mended (MendMesh)
+  std::string repaired;  ///< what was; filled in by LoadShape
 };
 
 /// A surface given by points only; pregrasp reconstructs a closed mesh from them.

@@ -177,7 +177,7 @@ TEST_F(LoadShapeTest, APlyFileWithTwoElementsOfVerticesIsRefusedAndFacesMayComeF
   const std::string face_element = "element face 4\nproperty list uchar int vertex_indices\n";
   Write("first.ply", "ply\nformat ascii 1.0\n" + face_element + vertex_element + "end_header\n" +
                          faces + vertices);
-  EXPECT_NEAR(CalcVolume(Mesh{"", 1.0, Load("first.ply")}), 1.0 / 6.0, 1e-12);
+  EXPECT_NEAR(CalcVolume(Mesh{"", 1.0, Load("first.ply"), false, ""}), 1.0 / 6.0, 1e-12);
   Write("two.ply", "ply\nformat ascii 1.0\n" + vertex_element + face_element + vertex_element +
                        "end_header\n" + vertices + faces + vertices);
   EXPECT_NE(Refusal("two.ply").find("which has 2 elements \"vertex\""), std::string::npos);
@@ -193,7 +193,7 @@ TEST_F(LoadShapeTest, AMeshReadsItsOwnFolderAndNothingElse) {
   fs::create_symlink(directory_ / "elsewhere.bin", directory_ / "a" / "link.bin");
   ASSERT_EQ(mkfifo((directory_ / "a" / "pipe.bin").c_str(), 0600), 0);
   Write("a/own.gltf", TetrahedronAsGltf("deeper/own.bin"));
-  EXPECT_NEAR(CalcVolume(Mesh{"", 1.0, Load("a/own.gltf")}), 1.0 / 6.0, 1e-6);
+  EXPECT_NEAR(CalcVolume(Mesh{"", 1.0, Load("a/own.gltf"), false, ""}), 1.0 / 6.0, 1e-6);
   for (const char* uri : {"../elsewhere.bin", "link.bin", "pipe.bin", "missing.bin"}) {
     Write("a/other.gltf", TetrahedronAsGltf(uri));
     const std::string refusal = Refusal("a/other.gltf");
@@ -375,10 +375,28 @@ TEST_F(LoadShapeTest, RefusesAnOpenMeshAndCountsItsOpenEdges) {
       << Refusal("box.obj");
 }
 
+// As modellers that merge corners write them.
+TEST_F(LoadShapeTest, SolidsThatMeetInAnEdgeAreTakenApart) {
+  const TriangleMesh cube = Tessellate(Box{Vector3(1, 1, 1)});
+  TriangleMesh two = cube;
+  AppendMesh(two, Transformed(cube, At(1, 1, 0)));
+  two = WeldVertices(two, 0.0);
+  ASSERT_EQ(FindDefects(two).crowded_edges, 1);
+  Write("edge.obj", testing::ObjText(two));
+  const Shape shape = LoadAny("edge.obj");
+  ASSERT_EQ(std::get<Union>(shape).parts.size(), 2U);
+  EXPECT_NEAR(CalcVolume(shape), 2.0, 1e-6);
+  AppendMesh(two, Transformed(cube, At(2, 0, 0)));  // its edges meet those of both neighbours
+  Write("chain.obj", testing::ObjText(WeldVertices(two, 0.0)));
+  EXPECT_NEAR(CalcVolume(LoadAny("chain.obj")), 3.0, 1e-6);
+}
+
 TEST_F(LoadShapeTest, RefusesMoreThanTwoTrianglesAtAnEdge) {
   TriangleMesh two = Tessellate(Box{Vector3(1, 1, 1)});
-  AppendMesh(two, Transformed(Tessellate(Box{Vector3(1, 1, 1)}), At(1, 1, 0)));
-  Write("edge.obj", testing::ObjText(two));
+  TriangleMesh other = Transformed(Tessellate(Box{Vector3(1, 1, 1)}), At(1, 1, 0));
+  other.F.col(0).swap(other.F.col(1));  // inside out: nothing says what belongs together
+  AppendMesh(two, other);
+  Write("edge.obj", testing::ObjText(WeldVertices(two, 0.0)));
   EXPECT_EQ(Refusal("edge.obj"),
             "a.lua:7: object.shape: expected a mesh with two triangles at each edge, got "
             "\"edge.obj\", which has more at 1 edge");

@@ -66,7 +66,7 @@ inline Scene SampleScene(std::uint64_t seed = 1) {
     if (movable) body.mass_properties = RandomMass(rng);
     scene.bodies.push_back(std::move(body));
   };
-  const Mesh mesh{"a file.obj", 0.001, RandomTetrahedron(rng)};
+  const Mesh mesh{"a file.obj", 0.001, RandomTetrahedron(rng), true, "1 face given twice left out"};
   add("object", mesh, true);
   add("table", Box{{0.8, 0.6, 1.0 / 7.0}}, false);
   Union inner{{{Sphere{0.013}, RandomPose(rng)}, {mesh, RandomPose(rng)}}};
