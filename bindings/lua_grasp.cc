@@ -1,5 +1,7 @@
 #include "bindings/lua_grasp.h"
 
+#include <cmath>
+#include <optional>
 #include <string>
 
 #include "app/grasp/wrench.h"
@@ -14,7 +16,7 @@ const Schema kWrenchOptions{"WrenchOptions",
                             {"p", "n", "mu", "mass", "gravity", "f_min", "f_max", "torque_scale"}};
 const Schema kWrenchResult{
     "WrenchResult", {"feasible", "closed", "margin", "min_normal", "forces", "status", "residual"}};
-const Schema kIkOptions{"IkOptions", {"contacts", "scene", "seed", "max_starts"}};
+const Schema kIkOptions{"IkOptions", {"contacts", "scene", "seed", "max_starts", "near"}};
 const Schema kIkContacts{"IkContacts", {"thumb", "index", "middle", "ring", "little"}};
 const Schema kIkContact{"IkContact", {"p", "n"}};
 const Schema kTransform{"Transform", {"p", "q"}};
@@ -65,6 +67,37 @@ struct IkOptions {
   std::shared_ptr<Session> session;
   std::int64_t seed = 1;
   int max_starts = IkConfig{}.max_starts;
+  std::optional<HandConfiguration> near;
+};
+template <>
+struct LuaValue<RigidTransform> {
+  static RigidTransform Read(lua_State* L, int index, const std::string& path) {
+    const Fields fields(L, index, kTransform, path + ".");
+    const auto wxyz = fields.Required<std::vector<double>>("q");
+    if (wxyz.size() != 4) fields.Refuse("q", "a quaternion {w, x, y, z}");
+    const Quaternion q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    if (!(std::abs(q.norm() - 1.0) < 1e-6)) fields.Refuse("q", "a quaternion of length 1");
+    return MakeTransform(q.normalized(), fields.Required<Vector3>("p"));
+  }
+};
+// Of an IkResult, or of another table with the same X_WH and q.
+template <>
+struct LuaValue<HandConfiguration> {
+  static HandConfiguration Read(lua_State* L, int index, const std::string& path) {
+    if (!lua_istable(L, index)) {
+      throw InputError("", path, "a table with X_WH and q, as ik gives", DescribeValue(L, index));
+    }
+    const Fields fields(L, index, kIkResult, path + ".");
+    HandConfiguration hand;
+    hand.X_WH = fields.Required<RigidTransform>("X_WH");
+    fields.Push("q");
+    if (!lua_istable(L, -1)) fields.Refuse("q", "a table of joint angles by name");
+    const Fields joints(L, lua_gettop(L), JointSchema(), path + ".q.");
+    for (int j = 0; j < kNumHandJoints; ++j)
+      hand.q[j] = joints.Required<double>(kHandJointNames[j]);
+    lua_pop(L, 1);
+    return hand;
+  }
 };
 template <>
 struct LuaValue<IkContact> {
@@ -96,6 +129,7 @@ struct LuaValue<IkOptions> {
     if (fields.Has("scene")) options.session = fields.Required<std::shared_ptr<Session>>("scene");
     options.seed = fields.Optional<std::int64_t>("seed", options.seed);
     options.max_starts = fields.Optional("max_starts", options.max_starts);
+    options.near = fields.Find<HandConfiguration>("near");
     return options;
   }
 };
@@ -131,6 +165,7 @@ Pushed Ik(lua_State* L, IkOptions& options) {
   TurnNormalsOutward(options.session.get(), options.contacts);
   IkProblem problem;
   problem.contacts = options.contacts;
+  problem.warm_start = problem.reference = options.near;
   const Rng rng(static_cast<std::uint64_t>(options.seed), RngStream::kScriptIk);
   IkResult result;
   if (options.session) {

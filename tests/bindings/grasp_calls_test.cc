@@ -76,12 +76,30 @@ TEST(IkCallTest, TheObjectSaysWhichSideOfAContactIsOutside) {
       "true\n");
 }
 
+TEST(IkCallTest, NearTheLastAnswerTheHandDoesNotJump) {
+  EXPECT_EQ(RunText(std::string(kCarton) + R"(
+    local function at(z, near) return pg.ik{ scene = s, seed = 3, near = near, contacts = {
+      thumb = { p = {0, -0.03, z}, n = {0, 1, 0} }, index = { p = {0.011, 0.03, z}, n = {0, -1, 0} } } } end
+    local last, largest = at(0.09), 0
+    for i = 1, 20 do
+      local r = at(0.09 - 0.0005 * i, last)
+      assert(r.solved)
+      for name, angle in pairs(r.q) do largest = math.max(largest, math.abs(angle - last.q[name])) end
+      last = r
+    end
+    print(largest < 0.1))"),
+            "true\n");
+}
+
 TEST(IkCallTest, ContactsInTheTableAreNotReached) {
   EXPECT_EQ(RunText(std::string(kCarton) + "print(reach(1, 0.001).solved)"), "false\n");
 }
 
 TEST(IkCallTest, BadInputSaysWhat) {
   EXPECT_NE(ErrorOf("pg.ik{ contacts = {} }").find("at least one contact"), std::string::npos);
+  EXPECT_NE(ErrorOf("pg.ik{ contacts = { thumb = { p = {0,0,0}, n = {0,0,1} } }, near = {} }")
+                .find("near.X_WH"),
+            std::string::npos);
   EXPECT_NE(ErrorOf("pg.ik{ contacts = { tumb = {} } }").find("thumb"), std::string::npos);
   EXPECT_NE(ErrorOf("pg.ik{ contacts = { thumb = { p = {0,0,0}, n = {0,0,0} } } }").find("thumb.n"),
             std::string::npos);
