@@ -25,6 +25,20 @@ const Schema kRobustness{"Robustness",
 const Schema kPlanStage{"PlanStage", {"thumb", "index"}};
 const Schema kPlanFinger{"PlanFinger", {"on", "kept", "p_OC", "nhat_O", "p_WTargets"}};
 
+// Which plan is certified: one of those kept, by its number, or stages made by hand.
+struct PlanChoice {
+  nlohmann::json options = nlohmann::json::object();  // of the command
+};
+
+}  // namespace
+
+template <>
+struct LuaValue<PlanChoice> {
+  static PlanChoice Read(lua_State* L, int index, const std::string& path);
+};
+
+namespace {
+
 constexpr int kIterationKib = 100;
 constexpr int kTrajectoryKib = 3000;
 
@@ -36,6 +50,40 @@ void PushCost(lua_State* L, const CostFacts& cost) {
       .Set("room", cost.room)
       .Set("reward", cost.reward);
   for (const CostTermFacts& term : cost.terms) record.Set(term.name.c_str(), term.value);
+}
+
+nlohmann::json PointsJson(const std::vector<Vector3>& points) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Vector3& p : points) list.push_back({p.x(), p.y(), p.z()});
+  return list;
+}
+
+// A finger of a stage as Trajectory.stages has it, without what follows from the rest; null where
+// it is off.
+nlohmann::json ReadPlanFinger(lua_State* L, int index, const std::string& path) {
+  const Fields fields(L, index, kPlanFinger, path + ".");
+  nlohmann::json finger = nlohmann::json::object();
+  if (!fields.Optional("on", true)) return nullptr;
+  if (fields.Has("p_OC") && !fields.Optional("kept", false)) {
+    const auto p_OC = fields.Required<Vector3>("p_OC");
+    finger["p_OC"] = {p_OC.x(), p_OC.y(), p_OC.z()};
+  }
+  finger["p_WTargets"] = PointsJson(fields.Required<std::vector<Vector3>>("p_WTargets"));
+  return finger;
+}
+
+nlohmann::json ReadPlanStage(lua_State* L, int index, const std::string& path) {
+  const Fields fields(L, index, kPlanStage, path + ".");
+  nlohmann::json stage = nlohmann::json::object();
+  for (const std::string& name : kPlanStage.keys) {
+    if (!fields.Has(name)) continue;
+    fields.Push(name);
+    if (!lua_istable(L, -1)) fields.Refuse(name, "a table");
+    nlohmann::json finger = ReadPlanFinger(L, -1, path + "." + name);
+    lua_pop(L, 1);
+    if (!finger.is_null()) stage[name] = std::move(finger);
+  }
+  return stage;
 }
 
 // The optimiser.
@@ -103,11 +151,10 @@ Pushed OptimizerRollouts(lua_State* L, LuaOptimizer& optimizer) {
 }
 
 Pushed OptimizerCertify(lua_State* L, LuaOptimizer& optimizer, const CertifyOptions& options,
-                        const std::optional<int>& plan) {
+                        const std::optional<PlanChoice>& plan) {
   auto trajectory = std::make_shared<LuaTrajectory>(
       LuaTrajectory{{optimizer.session, optimizer.node, options.ToSettings()}});
-  trajectory->Do(Verb::kCertify, plan.value_or(1) == 1 ? nlohmann::json::object()
-                                                       : nlohmann::json{{"plan", *plan}});
+  trajectory->Do(Verb::kCertify, plan ? plan->options : nlohmann::json::object());
   PushObject(L, std::move(trajectory));
   CountMemory(L, kTrajectoryKib);
   return {1};
@@ -350,6 +397,28 @@ const ClassInfo& TrajectoryClass() {
 std::vector<const Schema*> TrajectorySchemas() {
   return {&kCostTerms,  &kScreening, &kRollout,   &kNeighbours,
           &kRobustness, &kPlanStage, &kPlanFinger};
+}
+
+PlanChoice LuaValue<PlanChoice>::Read(lua_State* L, int index, const std::string& path) {
+  index = lua_absindex(L, index);
+  PlanChoice choice;
+  if (lua_type(L, index) == LUA_TNUMBER) {
+    const int plan = LuaValue<int>::Read(L, index, path);
+    if (plan != 1) choice.options["plan"] = plan;
+    return choice;
+  }
+  const int count = CheckList(L, index, path, "a plan's number or a list of stages");
+  nlohmann::json stages = nlohmann::json::array();
+  for (int i = 1; i <= count; ++i) {
+    lua_rawgeti(L, index, i);
+    const std::string field = fmt::format("{}[{}]", path, i);
+    if (!lua_istable(L, -1))
+      throw InputError("", field, "a table of fingers", DescribeValue(L, -1));
+    stages.push_back(ReadPlanStage(L, -1, field));
+    lua_pop(L, 1);
+  }
+  choice.options["stages"] = std::move(stages);
+  return choice;
 }
 
 }  // namespace pregrasp

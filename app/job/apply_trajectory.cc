@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "app/core/error.h"
+#include "app/geometry/mesh_distance.h"
 #include "app/job/apply_stages.h"
+#include "app/job/plan_json.h"
 
 namespace pregrasp::internal {
 namespace {
@@ -14,12 +16,15 @@ CostFacts MakeCostFacts(const PlanCost& cost) {
   return facts;
 }
 
+// That of the path, whose last node stands for further stages, which a plan made by hand may have.
 int TriangleOf(const Mppi& mppi, std::size_t stage, int finger) {
-  const ContactNode& node = mppi.problem().graph->nodes().at(mppi.problem().path.nodes[stage]);
+  const std::vector<int>& path = mppi.problem().path.nodes;
+  const ContactNode& node =
+      mppi.problem().graph->nodes().at(path[std::min(stage, path.size() - 1)]);
   return finger == 0 ? node.thumb : node.index;
 }
 
-// A plan's stages, of a RelativePlan or a WorldPlan.
+// A plan's stages, of a RelativePlan or a WorldPlan, along the path.
 template <typename Stages>
 std::vector<StageFacts> MakeStageFacts(const Mppi& mppi, const Stages& stages) {
   std::vector<StageFacts> facts;
@@ -195,20 +200,43 @@ RobustFacts MakeRobustFacts(Application& a) {
   return facts;
 }
 
-void CertifyBest(Application& a) {
-  Require(a.next.optimization && !a.next.optimization->plans.empty(), "at least one step()",
-          "none");
-  const std::vector<MppiPlan>& plans = a.next.optimization->plans;
-  const CommandOptions options(a.command);
+// A plan made by hand touches where it likes.
+void SetTriangles(const TriangleMesh& mesh, std::vector<StageFacts>& stages) {
+  const MeshDistance distance(mesh);
+  for (StageFacts& stage : stages) {
+    for (StageFingerFacts& finger : stage) {
+      if (finger.on) finger.triangle = distance.FindNearest(finger.p_OC).triangle;
+    }
+  }
+}
+
+// The plan of these that the command asks for, from 1.
+int ChoosePlan(const CommandOptions& options, const std::vector<MppiPlan>& plans) {
   const int plan = options.Has("plan") ? options.Int("plan") : 1;
   if (plan < 1 || plan > std::ssize(plans)) {
     throw InputError("", "plan", fmt::format("a whole number from 1 to {}", plans.size()),
                      std::to_string(plan));
   }
+  return plan;
+}
+
+void Certify(Application& a) {
+  const CommandOptions options(a.command);
+  const bool by_hand = options.Has("stages");
+  if (by_hand) {
+    Prepare(a);
+  } else {
+    Require(a.next.optimization && !a.next.optimization->plans.empty(), "at least one step()",
+            "none");
+  }
+  const Mppi& mppi = *a.next.mppi;
+  const int plan = by_hand ? 0 : ChoosePlan(options, a.next.optimization->plans);
   a.next.ForgetTrajectory();
   const Planner planner = a.next.planner->WithConfig(a.next.config);
-  auto certificate =
-      std::make_shared<const Certificate>(planner.Certify(*a.next.mppi, plans[plan - 1]));
+  auto certificate = std::make_shared<const Certificate>(
+      by_hand ? planner.Certify(mppi, PlanFromJson(options.Get("stages"), planner.grasp_world(),
+                                                   mppi.config().timing.knots))
+              : planner.Certify(mppi, a.next.optimization->plans[plan - 1]));
   a.next.release =
       std::make_shared<const ReleaseResult>(planner.Release(*a.next.graph, *certificate));
   a.next.certificate = certificate;
@@ -216,6 +244,7 @@ void CertifyBest(Application& a) {
   const TraceRow& last = certificate->trace.back();
   SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
   CertifyFacts facts = MakeCertifyFacts(a.next, a.job.scene(), plan);
+  if (by_hand) SetTriangles(a.next.graph->mesh(), facts.stages);
   if (certificate->certified) facts.robust = MakeRobustFacts(a);
   a.facts.details = std::move(facts);
 }
@@ -225,7 +254,7 @@ void CertifyBest(Application& a) {
 void ApplyTrajectory(Application& a) {
   if (a.command.verb == Verb::kScreen) Screen(a);
   if (a.command.verb == Verb::kIterate) Iterate(a);
-  if (a.command.verb == Verb::kCertify) CertifyBest(a);
+  if (a.command.verb == Verb::kCertify) Certify(a);
 }
 
 }  // namespace pregrasp::internal

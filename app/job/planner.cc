@@ -168,9 +168,12 @@ Mppi Planner::MakeMppi(const ContactGraph& graph, const ContactPath& path,
 }
 
 Certificate Planner::Certify(const Mppi& mppi, const MppiPlan& plan) const {
-  const PlanOutcome outcome = mppi.Simulate(plan.action);
+  return Certify(mppi, mppi.Simulate(plan.action).plan);
+}
+
+Certificate Planner::Certify(const Mppi& mppi, const WorldPlan& plan) const {
   Certificate certificate = CertifyPlan(*world_, *half_world_, *environment_, mppi.problem().start,
-                                        outcome.plan, mppi.config().timing, config_.certify);
+                                        plan, mppi.config().timing, config_.certify);
   if (!certificate.certified) return certificate;
   certificate.out_of_reach_t =
       FindOutOfReach(grasp_world_->ik(), config_.motion.ik, *world_, certificate.trace,

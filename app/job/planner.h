@@ -135,6 +135,8 @@ class Planner {
   /// Re-simulates a plan of `state.plans` through Simbody, and again at half the step, and looks
   /// whether the hand reaches its contacts (FindOutOfReach).
   Certificate Certify(const Mppi& mppi, const MppiPlan& plan) const;
+  /// The same for any plan in the world, with the timing of that optimisation.
+  Certificate Certify(const Mppi& mppi, const WorldPlan& plan) const;
 
   /// @param graph  whose mesh says where fingers may touch.
   ReleaseResult Release(const ContactGraph& graph, const Certificate& certificate) const;

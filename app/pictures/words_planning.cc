@@ -170,7 +170,9 @@ Lines Describe(const Scene& scene, const CertifyFacts& facts) {
     lines.push_back(fmt::format(
         "{}, simulated again by Simbody and at half the time step, leaves the {} where it stays. "
         "Without the fingers it {}, so they {}.",
-        facts.plan == 1 ? "The best plan" : fmt::format("Plan {} of those kept", facts.plan),
+        facts.plan == 0   ? "The plan made by hand"
+        : facts.plan == 1 ? "The best plan"
+                          : fmt::format("Plan {} of those kept", facts.plan),
         scene.object().name, facts.stays_when_released ? "stays too" : "would move",
         facts.stays_when_released ? "may leave" : "must keep pressing"));
   } else {

@@ -224,6 +224,24 @@ TEST_F(PlannerScriptTest, ATrajectoryIsCertifiedAndItsGraspsHaveReasons) {
       "path.1.certify\ttrue\ttrue\t2\t3\ttrue\n3\tpath.1.grasp.1\tnil\ttrue\ttrue\n3\ttrue\n");
 }
 
+TEST_F(PlannerScriptTest, APlanMadeByHandIsCertified) {
+  EXPECT_EQ(Script(R"(
+    local o = optimizer()
+    local drag = { { index = { p_OC = {0, 0, 0.002}, p_WTargets = {} } } }
+    for k = 1, 4 do drag[1].index.p_WTargets[k] = {-0.16 + 0.06 * k / 4, 0, -0.007} end
+    local t = o:certify({}, drag)
+    local index = t.stages[1].index
+    print(t.step_id, t.certified, #t.stages, t.stages[1].thumb.on, index.on, ("%.4f"):format(index.p_OC[3]))
+    print(("%.3f"):format(t.object.p[1] + 0.16))
+    local again = o:certify({}, t.stages)
+    print(again.step_id, ("%.6f"):format(again.object.p[1] - t.object.p[1]))
+    drag[2] = { index = { p_WTargets = { {-0.07, 0, -0.007} } } }
+    local on = o:certify({}, drag)
+    print(#on.stages, on.stages[2].index.kept, on.object.p[1] > t.object.p[1] + 0.02))"),
+            "path.1.certify\ttrue\t1\tfalse\ttrue\t0.0015\n0.054\n"
+            "path.1.certify~2\t0.000000\n2\ttrue\ttrue\n");
+}
+
 // A light cube on a post can be grasped from most sides: of the first seeds, whatever the networks
 // say, the first one with a feasible grasp.
 const char* const kCube = R"(
@@ -434,6 +452,17 @@ TEST_F(PlannerScriptTest, WhatMakesNoSenseIsOneLine) {
        "optimize: mppi.samples: expected at most 414 with paths.stages 2 and mppi.knots 100"},
       {"optimizer():certify{ hold_seconds = -1 }", "certify: "},
       {"optimizer():certify()", "certify: expected at least one step(), got none"},
+      {"optimizer():certify({}, {})",
+       "certify: stages: expected a list of 1 to 8 stages, got one of 0"},
+      {"optimizer():certify({}, { { index = { p_WTargets = { {0, 0, 0} } } } })",
+       "certify: stages[1].index.p_OC: expected a point on the object, got nothing"},
+      {"optimizer():certify({}, { { thumb = { p_OC = {0, 0, 0}, p_WTargets = { {0, 0, 0}, {0, 0, "
+       "0} } "
+       "} } })",
+       "certify: stages[1].thumb.p_WTargets: expected a list of one point, or of 4, one a knot, "
+       "got "
+       "one of 2"},
+      {"optimizer():certify({}, { { ring = {} } })", "certify: plan[1]: unknown key \"ring\""},
       {"local o = optimizer() o:step() o:fork{ knots = 7 }",
        "fork: knots: expected 4, as before, got 7"},
       {"optimizer().best_csot()",
