@@ -77,6 +77,7 @@ int Run(int argc, char** argv) {
   AddDiff(command, action);
   AddEval(command, action);
   AddInfo(command, action);
+  AddJobs(command, action);
   AddRepl(command, action);
   AddRun(command, action);
   AddScript(command, action);

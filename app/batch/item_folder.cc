@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "app/batch/item_record.h"
 #include "app/core/check.h"
 #include "app/core/error.h"
 
@@ -19,11 +20,38 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDescriptionFile = "description.json";
 
-fs::path ItemPath(const fs::path& folder, std::int64_t index, const std::string& extension) {
-  return folder / fmt::format("item-{:06}{}", index, extension);
+// A file beside `file`, of no other process on any machine that shares the folder.
+fs::path WritePartial(const fs::path& file, const std::string& text) {
+  fs::path partial = file;
+  partial += fmt::format(".{}.{}.partial", HostName(), getpid());
+  std::ofstream out(partial, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  if (!out) {
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    throw InputError(file.string(), "", "a file that can be written", "a write error");
+  }
+  return partial;
+}
+
+// A link, unlike a renamed file, takes no other's place. Where there are no links, the last writes.
+void WriteIfAbsent(const fs::path& file, const std::string& text) {
+  const fs::path partial = WritePartial(file, text);
+  std::error_code error, ignored;
+  fs::create_hard_link(partial, file, error);
+  if (error && error != std::errc::file_exists) {
+    fs::rename(partial, file, error);
+    if (error) throw InputError(file.string(), "", "a file that can be written", error.message());
+  }
+  fs::remove(partial, ignored);
 }
 
 }  // namespace
+
+fs::path ItemPath(const fs::path& folder, std::int64_t index, const std::string& extension) {
+  return folder / fmt::format("item-{:06}{}", index, extension);
+}
 
 std::string ReadWholeFile(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -34,31 +62,29 @@ std::string ReadWholeFile(const fs::path& file) {
 }
 
 void WriteWholeFile(const fs::path& file, const std::string& text) {
-  fs::path partial = file;
-  partial += fmt::format(".{}.partial", getpid());
+  const fs::path partial = WritePartial(file, text);
   std::error_code error;
-  {
-    std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-    out << text;
-    out.close();
-    if (!out) {
-      fs::remove(partial, error);
-      throw InputError(file.string(), "", "a file that can be written", "a write error");
-    }
-  }
   fs::rename(partial, file, error);
   if (error) throw InputError(file.string(), "", "a file that can be written", error.message());
 }
 
-ItemFolder::ItemFolder(fs::path folder, const std::string& description, std::string extension)
-    : folder_(std::move(folder)), extension_(std::move(extension)) {
+void MakeFolders(const fs::path& folder) {
   std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) throw InputError(folder_.string(), "", "a folder to write to", error.message());
+  fs::create_directories(folder, error);
+  if (error) throw InputError(folder.string(), "", "a folder to write to", error.message());
+}
+
+ItemFolder::ItemFolder(fs::path folder, const std::string& description, std::string extension,
+                       Purpose purpose)
+    : folder_(std::move(folder)), extension_(std::move(extension)) {
   const fs::path path = folder_ / kDescriptionFile;
-  if (!fs::exists(path)) {
-    WriteWholeFile(path, description);
-  } else if (const std::string there = ReadWholeFile(path); there != description) {
+  if (purpose == Purpose::kMake) {
+    MakeFolders(folder_);
+    if (!fs::exists(path)) WriteIfAbsent(path, description);
+  } else if (!fs::exists(path)) {
+    return;
+  }
+  if (const std::string there = ReadWholeFile(path); there != description) {
     throw InputError(
         folder_.string(), "", "a folder of this batch's items",
         fmt::format("one of another batch ({})", DescribeDifference(description, there)));

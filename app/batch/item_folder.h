@@ -14,17 +14,28 @@ std::string ReadWholeFile(const std::filesystem::path& file);
 /// new one or none. @throws InputError.
 void WriteWholeFile(const std::filesystem::path& file, const std::string& text);
 
+/// FOLDER/item-000012.EXT.
+std::filesystem::path ItemPath(const std::filesystem::path& folder, std::int64_t index,
+                               const std::string& extension);
+
+/// With the folders above it, where they are not there. @throws InputError.
+void MakeFolders(const std::filesystem::path& folder);
+
 /// A folder in which the items of a batch are being made, one file each: ITEM-000012.EXT. A file
 /// that is there is its item's completion record, because it appears whole; so a batch that was cut
 /// off goes on where it was, and shards of it can be made anywhere. description.json says what
 /// decides the items.
 class ItemFolder {
  public:
-  /// Opens a folder to make items in; makes it if it is not there.
+  /// What a folder is opened for: to make items, which makes the folder if it is not there; or to
+  /// look at those it has, which writes nothing.
+  enum class Purpose { kMake, kLook };
+
   /// @param description  JSON on one line. @param extension  of an item's file, ".json".
   /// @throws InputError if the folder holds items of another description, naming the first field
-  /// that differs.
-  ItemFolder(std::filesystem::path folder, const std::string& description, std::string extension);
+  /// that differs. Of programs that begin at the same time with different descriptions one goes on.
+  ItemFolder(std::filesystem::path folder, const std::string& description, std::string extension,
+             Purpose purpose = Purpose::kMake);
 
   std::filesystem::path PathOf(std::int64_t index) const;
   bool Has(std::int64_t index) const;

@@ -15,6 +15,7 @@ void AddDataset(const Subcommand& app, Action& action);
 void AddDiff(const Subcommand& app, Action& action);
 void AddEval(const Subcommand& app, Action& action);
 void AddInfo(const Subcommand& app, Action& action);
+void AddJobs(const Subcommand& app, Action& action);
 void AddRepl(const Subcommand& app, Action& action);
 void AddRun(const Subcommand& app, Action& action);
 void AddScript(const Subcommand& app, Action& action);

@@ -45,28 +45,41 @@ std::function<void(const BatchProgress&)> Report(const char* stage, ProgressLine
   };
 }
 
-int MakeGrasps(MakeOptions& options) {
+using Progress = std::function<void(const BatchProgress&)>;
+
+// Makes the items, or counts them.
+int Make(MakeOptions& options, const char* stage,
+         const std::function<void(const Progress&)>& make) {
   options.run.shard = ParseShard(options.shard);
+  if (options.run.only_count) {
+    make([&](const BatchProgress& counts) {
+      fmt::print("{}\n", DescribeCounts(options.run.folder.string(), counts));
+    });
+    return 0;
+  }
   ProgressLine line;
-  MakeGraspItems(options.run, options.items.Resolve(), Report("objects with grasps", line));
+  make(Report(stage, line));
   return 0;
+}
+
+int MakeGrasps(MakeOptions& options) {
+  return Make(options, "objects with grasps", [&](const Progress& progress) {
+    MakeGraspItems(options.run, options.items.Resolve(), progress);
+  });
 }
 
 int MakeLabels(MakeOptions& options) {
-  options.run.shard = ParseShard(options.shard);
-  ProgressLine line;
-  MakeLabelItems(options.run, options.items.Resolve(), options.grasps, options.generator,
-                 Report("objects with labels", line));
-  return 0;
+  return Make(options, "objects with labels", [&](const Progress& progress) {
+    MakeLabelItems(options.run, options.items.Resolve(), options.grasps, options.generator,
+                   progress);
+  });
 }
 
 int MakeStates(MakeOptions& options) {
-  options.run.shard = ParseShard(options.shard);
-  ProgressLine line;
   StateItemConfig config;
   config.item = options.items.Resolve();
-  MakeStateItems(options.run, config, Report("objects with searched states", line));
-  return 0;
+  return Make(options, "objects with searched states",
+              [&](const Progress& progress) { MakeStateItems(options.run, config, progress); });
 }
 
 void AddMakeOptions(const Subcommand& command, MakeOptions& options) {
@@ -78,6 +91,8 @@ void AddMakeOptions(const Subcommand& command, MakeOptions& options) {
   command.Add("--threads", options.run.threads, "Threads; 0 is one per processor")
       .Within(ThreadPool::kThreads)
       .ShowDefault();
+  command.AddFlag("--dry-run", options.run.only_count,
+                  "Make nothing: say how many items there are");
   options.items.AddTo(command);
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/batch/run_items.h"
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
 #include "app/core/data_folder.h"
@@ -34,7 +35,7 @@ struct EvalOptions {
   RunConfig run;
   int threads = 0;
   std::vector<std::string> settings;
-  bool keep_runs = false;
+  bool keep_runs = false, dry_run = false;
 };
 
 // Of `eval merge` and `eval report`.
@@ -150,7 +151,14 @@ EvalConfig MakeConfig(const EvalOptions& options) {
 }
 
 int Eval(const EvalOptions& options) {
-  const EvalConfig config = MakeConfig(options);
+  EvalConfig config = MakeConfig(options);
+  if (options.dry_run) {
+    config.only_count = true;
+    RunEval(config, [&](const EvalProgress& progress) {
+      fmt::print("{}\n", DescribeCounts(config.out.string(), progress.batch));
+    });
+    return 0;
+  }
   ProgressLine line;
   const bool complete = RunEval(config, [&](const EvalProgress& progress) {
     if (!progress.made.empty()) {
@@ -203,6 +211,7 @@ void AddEval(const Subcommand& app, Action& action) {
            "Folder of meshes that the study learning judges the networks by, too; an objects.csv "
            "there says file, category, mass_kg, quality");
   eval.AddFlag("--keep-runs", options->keep_runs, "Keep each item's run directory in OUT/runs");
+  eval.AddFlag("--dry-run", options->dry_run, "Make nothing: say how many items there are");
 
   // Whichever of the command and its parts is read last, a part that was named is what is done.
   auto part_chosen = std::make_shared<bool>(false);

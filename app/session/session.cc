@@ -1,21 +1,14 @@
 #include "app/session/session.h"
 
-#include <sys/resource.h>
-
 #include "app/core/data_folder.h"
 #include "app/core/error.h"
+#include "app/core/peak_memory.h"
 #include "app/core/sha256.h"
 #include "app/job/planner_settings.h"
 #include "app/recording/partial_directory.h"
 
 namespace pregrasp {
 namespace {
-
-double PeakMegabytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 RunSummary::Seconds SumSeconds(const Timeline& timeline) {
   RunSummary::Seconds seconds;

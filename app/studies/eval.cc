@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kRecordExtension = ".json";
+constexpr const char* kStudyItemExtension = ".json";
 
 // A folder for what is written to be hashed, removed with it.
 class ScratchFolder {
@@ -139,7 +139,10 @@ bool RunEval(const EvalConfig& config, const std::function<void(const EvalProgre
   BatchRun run;
   run.items = study->num_items();
   run.shard = config.shard;
-  const ItemFolder folder(config.out / "items", Describe(config, run.items), kRecordExtension);
+  run.records = config.out / "records";
+  run.only_count = config.only_count;
+  const ItemFolder folder(config.out / "items", Describe(config, run.items), kStudyItemExtension,
+                          run.only_count ? ItemFolder::Purpose::kLook : ItemFolder::Purpose::kMake);
   std::string made;
   RunItems(
       run, folder,
@@ -147,10 +150,12 @@ bool RunEval(const EvalConfig& config, const std::function<void(const EvalProgre
         const Json item = study->MakeItem(index);
         WriteWholeFile(folder.PathOf(index), FormatJsonIndented(item));
         made = info.describe(item);
+        return made;
       },
       [&](const BatchProgress& batch) {
         if (progress) progress({batch, made});
       });
+  if (run.only_count) return false;
   std::vector<nlohmann::json> items;
   for (std::int64_t i = 0; i < run.items; ++i) {
     if (!folder.Has(i)) return false;
@@ -164,7 +169,7 @@ void MergeEval(const std::vector<fs::path>& folders, const fs::path& out) {
   std::vector<fs::path> sources;
   sources.reserve(folders.size());
   for (const fs::path& folder : folders) sources.push_back(folder / "items");
-  const ItemFolders from(sources, kRecordExtension, "study");
+  const ItemFolders from(sources, kStudyItemExtension, "study");
   const nlohmann::json description =
       ParseJson(from.description(), (sources[0] / "description.json").string());
   const JsonReader fields(description, sources[0].string());
@@ -177,7 +182,7 @@ void MergeEval(const std::vector<fs::path>& folders, const fs::path& out) {
     texts.push_back(ReadWholeFile(file));
     items.push_back(ParseJson(texts.back(), file.string()));
   }
-  const ItemFolder folder(out / "items", from.description(), kRecordExtension);
+  const ItemFolder folder(out / "items", from.description(), kStudyItemExtension);
   for (std::int64_t i = 0; i < count; ++i) WriteWholeFile(folder.PathOf(i), texts[i]);
   WriteTables(info, items, out);
 }

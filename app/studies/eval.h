@@ -13,12 +13,14 @@ namespace pregrasp {
 /// One run of a study, or of a shard of it, into a folder:
 ///   items/item-000012.json  one file an item, there when the item is done
 ///   items/description.json  the study, the build, scenes, seeds, settings, weights
+///   records/                how each item was made (app/batch/item_record.h)
 ///   NAME.json, ..           the study's tables, there when all items are
 struct EvalConfig {
   std::string study;
   StudySetup setup;
   Shard shard;
   std::filesystem::path out;
+  bool only_count = false;  ///< make nothing: say what there is
 };
 
 /// What a line of progress says: an item that was just made, with its description, or none at the

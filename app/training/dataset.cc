@@ -51,7 +51,7 @@ struct Counts {
 }  // namespace
 
 void WriteItem(const ItemFolder& folder, const DatasetItem& item) {
-  WriteTensors(folder.PathOf(item.index), ItemsToTensors({item}));
+  WriteWholeFile(folder.PathOf(item.index), SerializeTensors(ItemsToTensors({item})));
 }
 
 void MergeDataset(const std::vector<fs::path>& folders, std::int64_t count, const fs::path& out,

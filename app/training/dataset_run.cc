@@ -6,14 +6,30 @@
 #include "app/core/sha256.h"
 
 namespace pregrasp {
+namespace {
+
+constexpr const char* kProgramField = "program";
+
+}  // namespace
 
 void MakeItems(const DatasetRun& run, const std::string& description,
                const std::function<DatasetItem(std::int64_t)>& make,
                const std::function<void(const BatchProgress&)>& progress) {
   run.Validate();
-  const ItemFolder folder(run.folder, description, kItemExtension);
+  auto described = nlohmann::ordered_json::parse(description);
+  described[kProgramField] = Sha256OfProgram();
+  const ItemFolder folder(run.folder, described.dump(), kItemExtension,
+                          run.only_count ? ItemFolder::Purpose::kLook : ItemFolder::Purpose::kMake);
+  BatchRun batch = run;
+  batch.records = run.folder / "records";
   RunItems(
-      run, folder, [&](std::int64_t index) { WriteItem(folder, make(index)); }, progress);
+      batch, folder,
+      [&](std::int64_t index) {
+        const DatasetItem item = make(index);
+        WriteItem(folder, item);
+        return item.name;
+      },
+      progress);
 }
 
 void MakeGraspItems(const DatasetRun& run, const ItemConfig& config,
@@ -36,10 +52,11 @@ void MakeStateItems(const DatasetRun& run, const StateItemConfig& config,
 
 void RequireDescription(const Dataset& dataset, const ItemConfig& config,
                         const std::filesystem::path& folder) {
-  if (dataset.description != config.ToJson()) {
-    throw InputError(folder.string(), "", "grasps made with this configuration",
-                     dataset.description);
-  }
+  auto description = nlohmann::ordered_json::parse(dataset.description);
+  description.erase(kProgramField);  // another build may use what one made
+  if (description.dump() == config.ToJson()) return;
+  throw InputError(folder.string(), "", "grasps made with this configuration",
+                   "of another (" + DescribeDifference(config.ToJson(), description.dump()) + ")");
 }
 
 void MakeLabelItems(const DatasetRun& run, const ItemConfig& config,

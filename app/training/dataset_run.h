@@ -21,9 +21,11 @@ struct DatasetRun : BatchRun {
   }
 };
 
-/// Makes the items that `run.folder` does not have yet (RunItems); the files are the same bytes
+/// Makes the items that `run.folder` does not have yet (RunItems), with a record of each in its
+/// folder records; the files are the same bytes
 /// whatever the shards and threads.
-/// @param description  JSON of all that decides an item, kept beside the items.
+/// @param description  JSON of all that decides an item, kept beside the items with the SHA-256 of
+/// the program, any part of which may decide it, too.
 /// @throws InputError if the folder holds items of another description; Interrupted.
 void MakeItems(const DatasetRun& run, const std::string& description,
                const std::function<DatasetItem(std::int64_t index)>& make,
@@ -37,7 +39,7 @@ void MakeGraspItems(const DatasetRun& run, const ItemConfig& config,
 void MakeStateItems(const DatasetRun& run, const StateItemConfig& config,
                     const std::function<void(const BatchProgress&)>& progress);
 
-/// @throws InputError naming `folder` if `dataset` was not made with `config`.
+/// @throws InputError naming `folder` if `dataset` was not made with `config`, by any build.
 void RequireDescription(const Dataset& dataset, const ItemConfig& config,
                         const std::filesystem::path& folder);
 

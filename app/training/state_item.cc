@@ -4,8 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "app/core/sha256.h"
-
 namespace pregrasp {
 namespace {
 
@@ -31,7 +29,6 @@ StateItemConfig::StateItemConfig() {
 std::string StateItemConfig::ToJson() const {
   auto json = nlohmann::ordered_json::parse(item.ToJson());
   json["labels"] = "search";
-  json["program"] = Sha256OfProgram();
   return json.dump();
 }
 

@@ -15,7 +15,7 @@ struct StateItemConfig {
 
   StateItemConfig();
 
-  /// A data set's description: it names this program's own file, whose every part decides.
+  /// What decides an item: a data set's description.
   std::string ToJson() const;
 };
 

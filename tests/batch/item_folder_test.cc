@@ -35,6 +35,18 @@ TEST(ItemFolderTest, AFolderOfAnotherBatchIsRefusedWithTheDifference) {
   }
 }
 
+TEST(ItemFolderTest, LookingMakesNothing) {
+  const TestFolder root;
+  const auto look = ItemFolder::Purpose::kLook;
+  EXPECT_FALSE(ItemFolder(root.path() / "none", kSeed1, ".txt", look).Has(0));
+  EXPECT_FALSE(fs::exists(root.path() / "none"));
+  const ItemFolder made(root.path() / "made", kSeed1, ".txt");
+  WriteWholeFile(made.PathOf(0), "");
+  EXPECT_TRUE(ItemFolder(root.path() / "made", kSeed1, ".txt", look).Has(0));
+  EXPECT_THROW(ItemFolder(root.path() / "made", "{}", ".txt", look), InputError);
+  EXPECT_EQ(std::distance(fs::directory_iterator(root.path() / "made"), {}), 2);
+}
+
 TEST(ItemFolderTest, WritingLeavesNoOtherFile) {
   const TestFolder root;
   WriteWholeFile(root.path() / "x", "old");

@@ -5,9 +5,11 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/core/sha256.h"
 #include "tests/networks/random_network.h"
 
 namespace pregrasp {
@@ -18,6 +20,7 @@ namespace fs = std::filesystem;
 std::map<std::string, std::string> ReadFiles(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".partial" || entry.is_directory()) continue;
     std::ifstream in(entry.path(), std::ios::binary);
     files[entry.path().filename().string()] =
         std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
@@ -117,6 +120,41 @@ TEST_F(DatasetRunTest, LabelsAreSharesAndKnowWhatTheyWereMadeFrom) {
   EXPECT_THROW(MakeLabelItems(Shard("other"), other, folder_ / "merged",
                               folder_ / "generator.safetensors", {}),
                InputError);
+}
+
+TEST_F(DatasetRunTest, ItemsOfTwoBuildsDoNotMerge) {
+  MakeGraspItems(Shard("a", 1, 2), SmallConfig(), {});
+  MakeGraspItems(Shard("b", 2, 2), SmallConfig(), {});
+  const fs::path description = folder_ / "b" / "description.json";
+  auto json = nlohmann::ordered_json::parse(ReadWholeFile(description));
+  EXPECT_EQ(json.at("program"), Sha256OfProgram());
+  json["program"] = std::string(64, '0');
+  WriteWholeFile(description, json.dump());
+  try {
+    MergeDataset({folder_ / "a", folder_ / "b"}, 4, folder_ / "merged");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("program: "), std::string::npos) << error.what();
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "merged"));
+  // Nor are items of this build made among those of another.
+  EXPECT_THROW(MakeGraspItems(Shard("b"), SmallConfig(), {}), InputError);
+}
+
+TEST_F(DatasetRunTest, CountingMakesNothing) {
+  MakeGraspItems(Shard("x", 1, 4), SmallConfig(), {});
+  const auto before = ReadFiles(folder_ / "x");
+  DatasetRun run = Shard("x");
+  run.only_count = true;
+  BatchProgress counted;
+  MakeGraspItems(run, SmallConfig(), [&](const BatchProgress& progress) { counted = progress; });
+  EXPECT_EQ(counted.items, 4);
+  EXPECT_EQ(counted.total, 4);
+  EXPECT_EQ(counted.done, 1);
+  EXPECT_EQ(ReadFiles(folder_ / "x"), before);
+  run.folder = folder_ / "nowhere";
+  MakeGraspItems(run, SmallConfig(), {});
+  EXPECT_FALSE(fs::exists(run.folder));
 }
 
 TEST_F(DatasetRunTest, NonsenseIsRefused) {

@@ -174,10 +174,5 @@ TEST(SearchLabelsTest, WithoutSurroundingsNothingIsSimulatedAndNothingCanBeMoved
   }
 }
 
-TEST(StateItemTest, TheDescriptionNamesTheProgram) {
-  StateItemConfig config;
-  EXPECT_NE(config.ToJson().find("\"program\""), std::string::npos);
-}
-
 }  // namespace
 }  // namespace pregrasp
