@@ -3,7 +3,7 @@
 #   --long      the whole suite, long tests and the trainer's among them
 #   --sanitize  the quick suite under the address and undefined-behaviour sanitizers, what is labelled determinism under the thread sanitizer
 #   --lint      formatting, luacheck, clang-tidy
-#   --cluster   jobs on an execution engine
+#   --cluster   jobs on Slurm, GNU parallel and Snakemake; the Debian package; some of it needs root
 #   --all       these four in turn, whatever fails, with the seconds that each took
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
@@ -11,19 +11,19 @@ jobs=$(nproc)
 
 quick() {
   ./build.sh release --with packages-dev.txt -DPREGRASP_TESTS=ON
-  exec ctest --preset release -j "$jobs" -LE 'long|trainer' "$@"
+  exec ctest --preset release -j "$jobs" -LE 'long|trainer|cluster' "$@"
 }
 
 long() {
   ./build.sh release --with packages-dev.txt --with packages-train.txt -DPREGRASP_TESTS=ON -DPREGRASP_TRAINER=ON
-  ctest --preset release -j "$jobs" "$@"
+  ctest --preset release -j "$jobs" -LE cluster "$@"
 }
 
 sanitize() {
   local failed=0
   # Debian's Simbody, MRPT and Mesa keep what they allocate at start-up: leaks are not looked for.
   ./build.sh asan-ubsan --with packages-dev.txt &&
-    PREGRASP_FUZZ_CALLS=20000 ASAN_OPTIONS=detect_leaks=0 ctest --preset asan-ubsan -j "$jobs" -LE 'long|golden' "$@" || failed=1
+    PREGRASP_FUZZ_CALLS=20000 ASAN_OPTIONS=detect_leaks=0 ctest --preset asan-ubsan -j "$jobs" -LE 'long|golden|cluster' "$@" || failed=1
   ./build.sh tsan --with packages-dev.txt --target determinism_tests && ctest --preset tsan -j "$jobs" -L determinism "$@" || failed=1
   return "$failed"
 }
@@ -40,7 +40,8 @@ lint() {
 }
 
 cluster() {
-  echo "cluster: there are no such tests yet"
+  ./build.sh release --with packages-dev.txt --with packages-cluster.txt -DPREGRASP_TESTS=ON
+  ctest --preset release -L cluster "$@"
 }
 
 all() {

@@ -58,6 +58,7 @@ void MergeDataset(const std::vector<fs::path>& folders, std::int64_t count, cons
                   int items_per_shard) {
   PREGRASP_CHECK(!folders.empty() && count > 0 && items_per_shard > 0, count, items_per_shard);
   const ItemFolders sources(folders, kItemExtension, "data set");
+  for (std::int64_t i = 0; i < count; ++i) sources.Find(i);  // before anything is written
   fs::create_directories(out);
   Counts total;
   std::map<std::string, Counts> families;

@@ -17,7 +17,8 @@ std::string Read(const std::string& name) {
 
 TEST(PackagesTest, EveryPackageHasItsReasonInTheReadme) {
   const std::string readme = Read("README.md");
-  for (const char* list : {"packages.txt", "packages-dev.txt", "packages-train.txt"}) {
+  for (const char* list :
+       {"packages.txt", "packages-dev.txt", "packages-train.txt", "packages-cluster.txt"}) {
     std::istringstream packages(Read(list));
     int count = 0;
     for (std::string package; packages >> package; ++count) {

@@ -137,6 +137,8 @@ TEST_F(DatasetRunTest, ItemsOfTwoBuildsDoNotMerge) {
     EXPECT_NE(std::string(error.what()).find("program: "), std::string::npos) << error.what();
   }
   EXPECT_FALSE(fs::exists(folder_ / "merged"));
+  EXPECT_THROW(MergeDataset({folder_ / "a"}, 4, folder_ / "merged"), InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "merged"));
   // Nor are items of this build made among those of another.
   EXPECT_THROW(MakeGraspItems(Shard("b"), SmallConfig(), {}), InputError);
 }
