@@ -7,9 +7,12 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <utility>
 
+#include "app/batch/run_items.h"
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/core/sha256.h"
 #include "app/core/text.h"
 #include "app/training/generator_task.h"
 #include "app/training/score_task.h"
@@ -33,6 +36,9 @@ struct Options {
   GeneratorTaskConfig generator;
   std::string variant = "full", encoder = "default", source = "search", progress = "relief";
   std::string study, decoder = "flow";
+  int seeds = 0;  // 0: one, into OUT itself
+  std::string shard = "1/1";
+  bool dry_run = false;
 };
 
 // Step, loss and time left: one line that renews itself on a terminal, plain lines otherwise.
@@ -97,6 +103,59 @@ Json Train(Task& task, const Options& options, const std::string& name) {
   return history.back().at("metrics");
 }
 
+// Trains with each of --seeds, one a folder OUT/seed-K, as the items of a batch: OUT/items has the
+// metrics of each, and OUT/seeds.json those of all when all are there.
+// @param task_of  makes the task of such options.
+template <typename TaskOf>
+int TrainSeeds(const Options& options, const std::string& name, const TaskOf& task_of) {
+  BatchRun run;
+  run.items = options.seeds;
+  run.shard = ParseShard(options.shard);
+  run.records = options.out / "records";
+  run.only_count = options.dry_run;
+  const Json description{{"task", Json::parse(task_of(options).Describe())},
+                         {"training", options.training.ToJson()},
+                         {"seeds", options.seeds},
+                         {"program", Sha256OfProgram()}};
+  const ItemFolder folder(options.out / "items", description.dump(), ".json",
+                          run.only_count ? ItemFolder::Purpose::kLook : ItemFolder::Purpose::kMake);
+  RunItems(
+      run, folder,
+      [&](std::int64_t index) {
+        Options one = options;
+        one.training.seed += static_cast<std::uint64_t>(index);
+        const std::string seed = fmt::format("seed-{}", one.training.seed);
+        one.out /= seed;
+        auto task = task_of(one);
+        const Json item{{"seed", one.training.seed}, {"metrics", Train(task, one, name)}};
+        WriteWholeFile(folder.PathOf(index), item.dump(1) + "\n");
+        return seed;
+      },
+      [&](const BatchProgress& counts) {
+        if (options.dry_run) fmt::print("{}\n", DescribeCounts(options.out.string(), counts));
+      });
+  if (options.dry_run) return 0;
+  Json all = Json::array();
+  for (std::int64_t i = 0; i < run.items; ++i) {
+    if (!folder.Has(i)) return 0;
+    all.push_back(Json::parse(ReadWholeFile(folder.PathOf(i))));
+  }
+  WriteWholeFile(options.out / "seeds.json", all.dump(1) + "\n");
+  return 0;
+}
+
+template <typename TaskOf>
+int TrainAll(const Options& options, const std::string& name, const TaskOf& task_of) {
+  if (options.seeds > 0) return TrainSeeds(options, name, task_of);
+  for (const auto& [given, option] :
+       {std::pair(options.shard != "1/1", "--shard"), std::pair(options.dry_run, "--dry-run")}) {
+    if (given) throw InputError(option, "", "--seeds, which it goes with", "none");
+  }
+  auto task = task_of(options);
+  Train(task, options, name);
+  return 0;
+}
+
 SetEncoderConfig EncoderNamed(const std::string& name) {
   if (name == "default") return {};
   if (name == "paper") return PaperSetEncoderConfig();
@@ -133,7 +192,6 @@ int TrainScore(Options options) {
   options.score.variant = ParseScoreVariant(options.variant);
   options.score.source = ParseLabelSource(options.source);
   options.score.progress = ParseProgressKind(options.progress);
-  options.score.seed = options.training.seed;
   if (options.score.mirror && options.score.source != LabelSource::kSearch) {
     throw InputError("--mirror", "", "--source search, whose progress has no right or left",
                      options.source);
@@ -141,19 +199,22 @@ int TrainScore(Options options) {
   const auto dataset = std::make_shared<Dataset>(ReadDatasets(options.data));
   if (options.study == "ablations") return StudyAblations(dataset, options);
   if (!options.study.empty()) throw InputError("--study", "", "ablations", options.study);
-  ScoreTask task(dataset, options.validation, options.score);
-  Train(task, options, "score");
-  return 0;
+  return TrainAll(options, "score", [&](const Options& one) {
+    ScoreTaskConfig config = one.score;
+    config.seed = one.training.seed;
+    return ScoreTask(dataset, one.validation, config);
+  });
 }
 
 int TrainGenerator(Options options) {
   options.generator.encoder = EncoderNamed(options.encoder);
   options.generator.decoder = ParseGeneratorDecoder(options.decoder);
-  options.generator.seed = options.training.seed;
-  GeneratorTask task(std::make_shared<Dataset>(ReadDatasets(options.data)), options.validation,
-                     options.generator);
-  Train(task, options, "generator");
-  return 0;
+  const auto dataset = std::make_shared<Dataset>(ReadDatasets(options.data));
+  return TrainAll(options, "generator", [&](const Options& one) {
+    GeneratorTaskConfig config = one.generator;
+    config.seed = one.training.seed;
+    return GeneratorTask(dataset, one.validation, config);
+  });
 }
 
 void AddCommonOptions(CLI::App& command, Options& options) {
@@ -170,6 +231,13 @@ void AddCommonOptions(CLI::App& command, Options& options) {
       ->capture_default_str();
   command.add_option("--seed", options.training.seed, "Of everything random")
       ->capture_default_str();
+  command
+      .add_option("--seeds", options.seeds,
+                  "Train with so many seeds from --seed on, each into a folder of OUT")
+      ->check(CLI::Range(1, 10'000));
+  command.add_option("--shard", options.shard, "i/n: every n-th of them, from the i-th")
+      ->capture_default_str();
+  command.add_flag("--dry-run", options.dry_run, "Train nothing: say how many seeds there are");
   command
       .add_option("--evaluate-every", options.training.evaluate_every,
                   "Steps between evaluations on the families held out")
