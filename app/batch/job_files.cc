@@ -87,7 +87,7 @@ constexpr const char* kParallelRun = R"text(#!/usr/bin/env bash
 set -euo pipefail
 {here}
 failed=0
-parallel --jobs {percent}% --joblog "$here/joblog.tsv" --resume-failed "$@" "$here/task.sh" {{}} ::: $(seq {tasks}) || failed=$?
+parallel --jobs {percent}% --joblog "$here/joblog-{tasks}.tsv" --resume-failed "$@" "$here/task.sh" {{}} ::: $(seq {tasks}) || failed=$?
 "$here/merge.sh"
 exit "$failed"
 )text";
@@ -96,12 +96,12 @@ constexpr const char* kSnakefile = R"text(# snakemake --snakefile Snakefile --co
 workdir: workflow.basedir
 
 rule merge:
-    input: expand("tasks/{{task}}", task=range(1, {tasks} + 1))
-    output: touch("tasks/merged")
+    input: expand("tasks-{tasks}/{{task}}", task=range(1, {tasks} + 1))
+    output: touch("tasks-{tasks}/merged")
     shell: "./merge.sh"
 
 rule task:
-    output: touch("tasks/{{task}}")
+    output: touch("tasks-{tasks}/{{task}}")
     wildcard_constraints: task="[0-9]+"
     threads: {cpus}
 {asked}    shell: "./task.sh {{wildcards.task}}"

@@ -267,7 +267,8 @@ int Status(const StatusOptions& options) {
     }
     return 0;
   }
-  if (options.complete && !tasks.empty()) {
+  if (options.complete) {
+    if (tasks.empty()) return 0;
     throw InputError(options.folder.string(), "", fmt::format("all {} items", items.size()),
                      fmt::format("{} of them", counts["done"]));
   }
@@ -334,7 +335,8 @@ void AddJobs(const Subcommand& app, Action& action) {
   const Subcommand status =
       jobs.AddCommand("status", "What became of each item, as a table; how to make one alone");
   status.Add("DIR", options->folder, "Folder that jobs wrote").Required();
-  status.AddFlag("--complete", options->complete, "Bad input unless all items are made");
+  status.AddFlag("--complete", options->complete,
+                 "Only check that all items are made: else bad input");
   status.AddFlag("--incomplete", options->incomplete,
                  "Print the tasks with items to make as Slurm arrays: offset, indices");
   status.Add("--max-array", options->max_array, "The cluster's MaxArraySize")

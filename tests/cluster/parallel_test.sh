@@ -13,5 +13,5 @@ check_killed
 [[ ! -e $dir/jobs/result ]] || fail "an incomplete batch was merged"
 "$dir/jobs/run.sh"
 check_result
-again=$(awk 'NR > 9 {print $NF}' "$dir/jobs/joblog.tsv" | sort -n | paste -sd,)
+again=$(awk 'NR > 9 {print $NF}' "$dir/jobs/joblog-8.tsv" | sort -n | paste -sd,)
 [[ $again == "$(paste -sd, "$dir/killed")" ]] || fail "run again: $again"
