@@ -1,6 +1,9 @@
 #include "app/core/data_folder.h"
 
 #include <array>
+#include <cstdlib>
+
+#include "app/core/error.h"
 
 namespace pregrasp {
 namespace {
@@ -9,6 +12,12 @@ namespace fs = std::filesystem;
 
 fs::path FindDataFolder() {
   std::error_code error;
+  if (const char* given = std::getenv("PREGRASP_DATA"); given != nullptr && *given != '\0') {
+    if (!fs::exists(fs::path(given) / "assets" / "MANIFEST", error)) {
+      throw InputError("PREGRASP_DATA", "", "a folder with assets, lua and scenes", given);
+    }
+    return fs::weakly_canonical(given, error);
+  }
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
   const std::array<fs::path, 2> beside{program / ".." / "..",
                                        program / ".." / "share" / "pregrasp"};

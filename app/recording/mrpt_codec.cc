@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "app/core/data_folder.h"
 #include "app/core/error.h"
 
 namespace pregrasp {
@@ -11,13 +12,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Beside the program, or where this build put it.
+// Beside the program, or as installed below a prefix: the program's, or that of the data, for a
+// program of others. Else where this build put it.
 fs::path FindModule() {
   const fs::path built = PREGRASP_MRPT_MODULE;
+  const fs::path installed = fs::path("lib") / "pregrasp" / built.filename();
   std::error_code error;
-  const fs::path beside =
-      fs::read_symlink("/proc/self/exe", error).parent_path() / built.filename();
-  return fs::exists(beside, error) ? beside : built;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& file : {program / built.filename(), program.parent_path() / installed,
+                               DataFolder().parent_path().parent_path() / installed}) {
+    if (fs::exists(file, error)) return file;
+  }
+  return built;
 }
 
 const MrptCodec& LoadModule() {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <utility>
@@ -17,6 +18,8 @@
 
 namespace pregrasp {
 namespace {
+
+namespace fs = std::filesystem;
 
 // Runs a shell command in the folder, with $PREGRASP set to the built program.
 int Shell(const std::string& command, const TestFolder& folder) {
@@ -106,6 +109,21 @@ TEST(ProcessTest, AnUnknownDriverOfPicturesIsBadInput) {
   EXPECT_EQ(ReadText(folder.path() / "err.txt"),
             "GALLIUM_DRIVER: expected llvmpipe, or nothing, got \"nope\"\n");
   EXPECT_EQ(Shell("GALLIUM_DRIVER=llvmpipe $PREGRASP info > out.txt", folder), 0);
+}
+
+TEST(ProcessTest, AnotherFolderOfDataIsTakenOrRefused) {
+  const TestFolder folder;
+  EXPECT_EQ(Shell("PREGRASP_DATA=$PWD $PREGRASP info > out.txt 2> err.txt", folder), 2);
+  EXPECT_EQ(
+      ReadText(folder.path() / "err.txt").find("PREGRASP_DATA: expected a folder with assets"), 0U);
+  fs::create_directory(folder.path() / "data");
+  for (const char* name : {"assets", "lua", "scenes"}) {
+    fs::create_directory_symlink(fs::path(PREGRASP_SOURCE_DIR) / name,
+                                 folder.path() / "data" / name);
+  }
+  EXPECT_EQ(Shell("PREGRASP_DATA=data $PREGRASP info > out.txt", folder), 0);
+  EXPECT_NE(ReadText(folder.path() / "out.txt").find((folder.path() / "data").string()),
+            std::string::npos);
 }
 
 TEST(ProcessTest, LongInputToThePromptIsReadInTimeInProportion) {
