@@ -140,7 +140,7 @@ std::string AskedOfSnakemake(const JobPlan& plan) {
 }
 
 std::string MergeLine(const JobPlan& plan) {
-  if (plan.merge.empty()) return plan.program + " jobs status \"$here\" --complete";
+  if (plan.merge.empty()) return ShellWord(plan.program) + " jobs status \"$here\" --complete";
   return "exec " + ShellWords(plan.merge) + " \"$here/made\" --out \"$here/result\"";
 }
 

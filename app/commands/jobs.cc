@@ -218,8 +218,8 @@ int Jobs(const std::string& engine, const JobsOptions& options) {
   if (plan.command[1] == "dataset") {
     plan.merge = {plan.program, "dataset", "merge", "--items", std::to_string(plan.items)};
   }
-  const bool asks = engine != "parallel" && (plan.minutes == 0 || plan.memory_mb == 0);
-  if (asks) {
+  if (!options.dry_run) WriteJobFiles(plan);  // whose folder it is, should measuring be cut off
+  if (engine != "parallel" && (plan.minutes == 0 || plan.memory_mb == 0)) {
     Measured measured = MeasureItems(plan);
     const auto missing = FindMissing(plan);
     if (measured.items == 0 && missing && !options.dry_run) {
