@@ -40,7 +40,7 @@ lint() {
 }
 
 cluster() {
-  ./build.sh release --with packages-dev.txt --with packages-cluster.txt -DPREGRASP_TESTS=ON
+  ./build.sh release --with packages-dev.txt --with packages-cluster.txt -DPREGRASP_TESTS=ON --target pregrasp
   ctest --preset release -L cluster "$@"
 }
 
