@@ -10,6 +10,16 @@ using fields::Json;
 using fields::Read;
 using fields::Write;
 
+std::optional<FactsDifference> FindFirst(const Json& left, const Json& right, double tolerance) {
+  std::optional<FactsDifference> first;
+  VisitDifferences(left, right, [&](const JsonDifference& found) {
+    if (found.distance && *found.distance <= tolerance) return true;
+    first = {found.field, found.left, found.right};
+    return false;
+  });
+  return first;
+}
+
 }  // namespace
 
 Json FactsToJson(const StepFacts& facts, int number) {
@@ -40,13 +50,17 @@ StepFacts FactsFromJson(const nlohmann::json& value, const std::string& where) {
   return facts;
 }
 
-std::optional<FactsDifference> CompareFacts(const StepFacts& left, const StepFacts& right) {
-  std::optional<FactsDifference> first;
-  VisitDifferences(FactsToJson(left, 0), FactsToJson(right, 0), [&](const JsonDifference& found) {
-    first = {found.field, found.left, found.right};
-    return false;
-  });
-  return first;
+std::optional<FactsDifference> CompareFacts(const StepFacts& left, const StepFacts& right,
+                                            double tolerance) {
+  return FindFirst(FactsToJson(left, 0), FactsToJson(right, 0), tolerance);
+}
+
+std::optional<FactsDifference> CompareContents(const StepFacts& left, const StepFacts& right) {
+  Json documents[] = {FactsToJson(left, 0), FactsToJson(right, 0)};
+  for (Json& document : documents) {
+    for (const char* field : {"id", "stage", "command"}) document.erase(field);
+  }
+  return FindFirst(documents[0], documents[1], 0.0);
 }
 
 }  // namespace pregrasp

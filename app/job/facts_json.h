@@ -22,6 +22,11 @@ StepFacts FactsFromJson(const nlohmann::json& value, const std::string& where);
 struct FactsDifference {
   std::string field, left, right;
 };
-std::optional<FactsDifference> CompareFacts(const StepFacts& left, const StepFacts& right);
+/// @param tolerance  the distance (CalcDistance) up to which numbers count as the same.
+std::optional<FactsDifference> CompareFacts(const StepFacts& left, const StepFacts& right,
+                                            double tolerance = 0.0);
+
+/// The same of what two steps say, leaving out their ids and the commands that made them.
+std::optional<FactsDifference> CompareContents(const StepFacts& left, const StepFacts& right);
 
 }  // namespace pregrasp

@@ -114,7 +114,9 @@ class Runner {
 
   const Node& BuildGraph() {
     Report("contact graph", 0, 1);
-    const Node& mesh = timeline_.Do(timeline_.root(), Verb::kMesh);
+    nlohmann::json options = nlohmann::json::object();
+    if (!config_.settings.empty()) options["settings"] = config_.settings;
+    const Node& mesh = timeline_.Do(timeline_.root(), Verb::kMesh, std::move(options));
     return PruneAll(timeline_, timeline_.Do(mesh, Verb::kScore), {});
   }
 

@@ -18,6 +18,8 @@ struct RunConfig {
   int motions = 6;   ///< lifting grasps of one path whose hand motion is tried
   int plans = 4;     ///< of one path that are certified, their ends differing: of these the one
                      ///< with most lifting grasps is taken on
+  /// Of the planner, by full name, from the graph on; where they are those of the job, none.
+  nlohmann::json settings = nlohmann::json::object();
 
   void Validate() const;
 };

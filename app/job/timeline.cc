@@ -7,6 +7,7 @@
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
+#include "app/job/facts_json.h"
 #include "app/job/planner_settings.h"
 
 namespace pregrasp {
@@ -39,6 +40,58 @@ void DropIdleSettings(nlohmann::json& options, const PlannerConfig& config) {
   } else {
     options["settings"] = std::move(changed);
   }
+}
+
+// Holds the record of a step against what doing it again gives.
+void RequireSame(const StepFacts& here, const StepFacts& recorded, double tolerance) {
+  if (const auto difference = CompareFacts(here, recorded, tolerance)) {
+    throw InputError(recorded.id, difference->field, difference->left + ", as this program has it",
+                     difference->right + " on record");
+  }
+}
+
+// The progress of a step that was not done here, from what is recorded: as CalcProgress.
+Progress ProgressAfter(const Timeline::Node& node) {
+  using Reached = Progress::Reached;
+  const Progress& before = node.parent->progress;
+  Progress progress;
+  if (const auto* certified = std::get_if<CertifyFacts>(&node.facts.details)) {
+    progress.reached = certified->certified ? Reached::kCertified : Reached::kTrajectory;
+    return progress;
+  }
+  const bool follows = std::holds_alternative<GraspFacts>(node.facts.details) ||
+                       std::holds_alternative<LiftFacts>(node.facts.details) ||
+                       std::holds_alternative<FrameFacts>(node.facts.details) ||
+                       std::holds_alternative<MotionFacts>(node.facts.details);
+  if (!follows) return progress;
+  if (node.command.verb == Verb::kFrame) return before;
+  progress.feasible = before.feasible;
+  progress.lifted = before.lifted;
+  if (const auto* grasp = std::get_if<GraspFacts>(&node.facts.details)) {
+    progress.feasible += grasp->feasible ? 1 : 0;
+  }
+  if (const auto* lift = std::get_if<LiftFacts>(&node.facts.details)) {
+    progress.lifted += lift->held ? 1 : 0;
+  }
+  progress.reached = progress.lifted > 0     ? Reached::kLifted
+                     : progress.feasible > 0 ? Reached::kFeasible
+                                             : Reached::kCertified;
+  const auto* motion = std::get_if<MotionFacts>(&node.facts.details);
+  if (node.command.verb != Verb::kSmooth || motion->failed > 0) return progress;
+  bool held = false, disturbed = false;
+  for (const Timeline::Node* at = node.parent; at != nullptr; at = at->parent) {
+    const auto* lift = std::get_if<LiftFacts>(&at->facts.details);
+    if (lift != nullptr && lift->grasp == motion->grasp) {
+      held = lift->held;
+      disturbed = disturbed || lift->neighbours.disturbed;
+    }
+    if (const auto* certified = std::get_if<CertifyFacts>(&at->facts.details)) {
+      disturbed = disturbed || certified->neighbours.disturbed;
+      break;
+    }
+  }
+  if (held) progress.reached = disturbed ? Reached::kMoved : Reached::kOk;
+  return progress;
 }
 
 }  // namespace
@@ -83,20 +136,58 @@ const Timeline::Node& Timeline::Add(const Node* parent, Applied applied) {
   node->progress = CalcProgress(*applied.state);
   states_[node->number] = std::move(applied.state);
   if (states_.size() > kKeptStates) states_.erase(std::next(states_.begin()));
+  return Insert(std::move(node));
+}
+
+const Timeline::Node& Timeline::Insert(std::unique_ptr<Node> node) {
   by_id_[node->facts.id] = node.get();
-  if (parent != nullptr) children_[parent].push_back(node.get());
+  if (node->parent != nullptr) children_[node->parent].push_back(node.get());
   nodes_.push_back(std::move(node));
   if (listener_) listener_(*nodes_.back());
   return *nodes_.back();
 }
 
+const Timeline::Node& Timeline::Restore(StepFacts facts, double tolerance) {
+  if (facts.command.verb == Verb::kOpen) {
+    RequireSame(root().facts, facts, tolerance);
+    return root();
+  }
+  const Node& parent = Find(facts.command.node);
+  if (by_id_.count(facts.id) > 0) {
+    throw InputError("", "id", "an id of its own", "a second \"" + facts.id + '"');
+  }
+  auto node = std::make_unique<Node>();
+  node->number = static_cast<int>(nodes_.size()) + 1;
+  node->parent = &parent;
+  node->command = facts.command;
+  node->facts = std::move(facts);
+  node->progress = ProgressAfter(*node);
+  node->recorded_tolerance = tolerance;
+  return Insert(std::move(node));
+}
+
+void Timeline::SetGate(std::function<bool(const Node&)> more) {
+  gate_ = std::move(more);
+  gate_open_ = true;
+}
+
+const Timeline::Node& Timeline::Pass(const Node& node) {
+  if (gate_) gate_open_ = gate_(node);
+  return node;
+}
+
 const Timeline::Node& Timeline::Do(const Node& from, Verb verb, nlohmann::json options) {
-  const std::shared_ptr<const JobState> state = GetState(from);
+  if (gate_ && !gate_open_) throw Paused();
   if (options.is_null()) options = nlohmann::json::object();
+  // What has no settings is known or not without the state, which a recorded step may not have.
+  if (!options.contains("settings")) {
+    if (const Node* known = FindChild(from, {verb, from.id(), options})) return Pass(*known);
+  }
+  const std::shared_ptr<const JobState> state = GetState(from);
   DropIdleSettings(options, state->config);
   const Command command{verb, from.id(), std::move(options)};
-  if (const Node* known = FindChild(from, command)) return *known;
-  return Commit(from, TimedApply(state, command));
+  if (const Node* known = FindChild(from, command)) return Pass(*known);
+  return Pass(Commit(from, TimedApply(state, command)));
 }
 
 Applied Timeline::Try(const Node& from, Verb verb, const nlohmann::json& options) const {
@@ -125,9 +216,13 @@ std::shared_ptr<const JobState> Timeline::GetState(const Node& node) const {
   const auto kept = states_.find(node.number);
   if (kept != states_.end()) return kept->second;
   PREGRASP_CHECK(node.parent != nullptr);
-  std::shared_ptr<const JobState> state = TimedApply(GetState(*node.parent), node.command).state;
-  states_[node.number] = state;
-  return state;
+  Applied applied = TimedApply(GetState(*node.parent), node.command);
+  if (node.recorded_tolerance) {
+    applied.facts.id = node.id();  // which branch it is on is the record's to say
+    RequireSame(applied.facts, node.facts, *node.recorded_tolerance);
+  }
+  states_[node.number] = applied.state;
+  return std::move(applied.state);
 }
 
 std::vector<const Timeline::Node*> PathTo(const Timeline::Node& node) {

@@ -1,14 +1,21 @@
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/job/apply.h"
 
 namespace pregrasp {
+
+/// Thrown by a timeline that was told to do no more (Timeline::SetGate).
+struct Paused : std::exception {
+  const char* what() const noexcept override { return "paused"; }
+};
 
 /// Everything that was done in a job, as a tree: a node is a step, its parent the step it acted on.
 /// Going back is to act on an earlier node, a fork is a second child. Nodes never change and never
@@ -25,6 +32,9 @@ class Timeline : public FactsSource {
     Command command;  ///< its node is the parent's id
     StepFacts facts;
     Progress progress;
+    /// Taken from a record and not done yet: when its state is first asked for, what that gives
+    /// may differ from the facts by so much and no more. None: it was done here.
+    std::optional<double> recorded_tolerance = std::nullopt;
 
     const std::string& id() const { return facts.id; }
   };
@@ -42,6 +52,17 @@ class Timeline : public FactsSource {
   /// left out.
   /// @throws as Apply. Interrupted physics of a simulation by hand is a node first.
   const Node& Do(const Node& from, Verb verb, nlohmann::json options = nlohmann::json::object());
+
+  /// Adds the next step of a job that was recorded, as its record has it, without doing it:
+  /// GetState does, and holds the record against what comes of it.
+  /// @param facts  the steps in the order of doing, the root's first, which is compared at once.
+  /// @param tolerance  the distance (CalcDistance) up to which numbers count as the same.
+  /// @throws InputError for a step that does not fit the timeline.
+  const Node& Restore(StepFacts facts, double tolerance);
+
+  /// From now on `more` is called with each node that Do did or found; after its first no, Do
+  /// throws Paused before it does anything. An empty function takes that back.
+  void SetGate(std::function<bool(const Node&)> more);
 
   /// What Do would come to, without doing it; Commit then does it.
   Applied Try(const Node& from, Verb verb, const nlohmann::json& options) const;
@@ -66,6 +87,8 @@ class Timeline : public FactsSource {
   const Node& Add(const Node* parent, Applied applied);
   std::string FreeId(const std::string& id, const Node* parent) const;
   Applied TimedApply(const std::shared_ptr<const JobState>& state, const Command& command) const;
+  const Node& Insert(std::unique_ptr<Node> node);
+  const Node& Pass(const Node& node);
 
   Job& job_;
   std::vector<std::unique_ptr<Node>> nodes_;
@@ -74,6 +97,8 @@ class Timeline : public FactsSource {
   mutable std::map<int, std::shared_ptr<const JobState>> states_;  // by number, the latest
   mutable std::map<std::string, double> seconds_;
   std::function<void(const Node&)> listener_;
+  std::function<bool(const Node&)> gate_;
+  bool gate_open_ = true;
 };
 
 /// The nodes from the root to `node`, both included.
