@@ -9,7 +9,8 @@
 namespace pregrasp::internal {
 namespace {
 
-constexpr int kSiblings = 5;  // told of a path
+constexpr int kSiblings = 5;            // told of a path
+constexpr std::size_t kMostStages = 8;  // as paths.stages
 
 NodeFacts MakeNodeFacts(const ContactNode& node) {
   return {node.id,     node.thumb,  node.index,      node.s_c,       node.s_n,
@@ -111,31 +112,64 @@ void Prune(Application& a) {
   }
 }
 
-void TakePath(Application& a) {
-  Require(a.next.paths != nullptr, "a graph that has been pruned", "one that has not");
+// The path of the command's rank in the order.
+std::shared_ptr<const ContactPath> FindRanked(const Application& a) {
   const int rank = CommandOptions(a.command).Int("rank");
   const PathOrder order = a.next.config.order;
   const int stages = a.next.config.stages;
-  const auto path = a.next.paths->Find(order, stages, rank);
+  auto path = a.next.paths->Find(order, stages, rank);
   if (!path) {
     throw InputError("", "rank",
                      fmt::format("at most {:.0f} paths", a.next.paths->Count(order, stages)),
                      std::to_string(rank));
   }
-  a.facts.id = fmt::format("paths.rank.{}", rank);
+  return path;
+}
+
+// The path of the command's nodes, which are put together by hand: it has no rank.
+std::shared_ptr<const ContactPath> BuildPath(const Application& a) {
+  const nlohmann::json& nodes = CommandOptions(a.command).Get("nodes");
+  const std::vector<ContactNode>& all = a.next.graph->nodes();
+  if (!nodes.is_array() || nodes.empty() || nodes.size() > kMostStages) {
+    throw InputError("", "nodes", fmt::format("a list of 1 to {} nodes", kMostStages),
+                     nodes.is_array() ? std::to_string(nodes.size()) : nodes.dump());
+  }
+  auto path = std::make_shared<ContactPath>();
+  for (const nlohmann::json& id : nodes) {
+    if (!id.is_number_integer() || id < 0 || id >= std::ssize(all)) {
+      throw InputError("", "nodes", fmt::format("a node from 0 to {}", all.size() - 1), id.dump());
+    }
+    const ContactNode& node = all[id.get<std::size_t>()];
+    path->terms.push_back(path->nodes.empty() ? node.s_c : node.s_n);
+    path->nodes.push_back(node.id);
+  }
+  for (auto term = path->terms.rbegin(); term != path->terms.rend(); ++term) path->score += *term;
+  path->value = path->score;
+  return path;
+}
+
+void TakePath(Application& a) {
+  Require(a.next.paths != nullptr, "a graph that has been pruned", "one that has not");
+  const bool by_hand = CommandOptions(a.command).Has("nodes");
+  const PathOrder order = a.next.config.order;
+  const int stages = a.next.config.stages;
+  const auto path = by_hand ? BuildPath(a) : FindRanked(a);
+  a.facts.id = by_hand ? "paths.hand" : fmt::format("paths.rank.{}", path->rank);
   PathFacts facts;
-  facts.rank = rank;
+  facts.rank = path->rank;
   for (const int id : path->nodes) facts.nodes.push_back(MakeNodeFacts(a.next.graph->nodes()[id]));
   facts.score = path->score;
   facts.terms = path->terms;
-  facts.order = PathOrderName(order);
+  facts.order = by_hand ? "hand" : PathOrderName(order);
   facts.value = path->value;
   facts.repeats = path->repeats;
   facts.num_paths = a.next.paths->Count(order, stages);
   facts.num_tied = path->num_tied;
   facts.tie_rule = TieRuleName(path->rule);
-  for (const ContactPath& sibling : FindSiblings(*a.next.graph, *path, kSiblings)) {
-    facts.siblings.push_back({sibling.nodes, sibling.score});
+  if (!by_hand) {
+    for (const ContactPath& sibling : FindSiblings(*a.next.graph, *path, kSiblings)) {
+      facts.siblings.push_back({sibling.nodes, sibling.score});
+    }
   }
   a.facts.details = std::move(facts);
   a.next.ForgetPath();

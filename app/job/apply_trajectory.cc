@@ -111,13 +111,28 @@ void Screen(Application& a) {
   a.next.optimization = std::make_shared<const MppiState>(std::move(state));
 }
 
+// Puts the plan of a rollout of the last iteration in the place of the mean.
+void SetNominal(const Application& a, MppiState& state) {
+  const int rollout = CommandOptions(a.command).Int("nominal");
+  const auto count = std::ssize(state.samples);
+  if (rollout < 1 || rollout > count) {
+    throw InputError(
+        "", "nominal",
+        count == 0 ? "an iteration before" : fmt::format("a rollout from 1 to {}", count),
+        std::to_string(rollout));
+  }
+  state.mean = state.samples[static_cast<std::size_t>(rollout) - 1].action;
+}
+
 void Iterate(Application& a) {
   a.next.ForgetTrajectory();
   Prepare(a);
-  Require(!a.next.optimization->ended() || a.command.options.contains("settings"),
+  Require(!a.next.optimization->ended() || a.command.options.contains("settings") ||
+              a.command.options.contains("nominal"),
           "an optimisation that goes on", "one that has ended");
   const Mppi& mppi = *a.next.mppi;
   MppiState state = *a.next.optimization;
+  if (a.command.options.contains("nominal")) SetNominal(a, state);
   const int iteration = state.iteration;
   mppi.Step(state, a.job.pool());
   a.facts.id = fmt::format("path.{}.mppi.{}", a.next.path->rank, state.iteration);

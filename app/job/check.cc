@@ -89,8 +89,8 @@ class Checker {
                      [&](const Body& candidate) { return candidate.name == settled.largest.body; });
     Add(Severity::kError, body->where,
         fmt::format(
-            "\"{}\" is not at rest: within {:g} s it moves {:.3g} mm, and something turns by "
-            "{:.3g} deg (allowed: {:g} mm and {:g} deg){}",
+            "\"{}\" is not at rest: within {:g} s it moves {:.2f} mm, and something turns by "
+            "{:.2f} deg (allowed: {:g} mm and {:g} deg){}",
             body->name, kRestSeconds, 1e3 * settled.largest.moved,
             RadToDeg(settled.largest.rotated), 1e3 * kRestMoved, RadToDeg(kRestRotated),
             IsFloating(*body)

@@ -209,6 +209,15 @@ void FillObjectMotion(const Timeline& timeline, const JobState& state, RunSummar
   }
 }
 
+// Whether a path or a mean on the way to a node was picked by hand (honesty rule 3).
+bool IsByHand(const Node& node) {
+  for (const Node* at = &node; at != nullptr; at = at->parent) {
+    if (at->command.verb == Verb::kPath && at->command.options.contains("nodes")) return true;
+    if (at->command.verb == Verb::kIterate && at->command.options.contains("nominal")) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<WorldState> GetRollout(const JobState& state) {
@@ -267,7 +276,7 @@ RunSummary Summarize(const Timeline& timeline, const Node& node) {
   summary.scene = job.scene().name;
   summary.seed = job.setup().seed;
   summary.status = StatusAt(timeline, node);
-  summary.within_rules = RuleDepartures(job.scene(), state->config).empty();
+  summary.within_rules = RuleDepartures(job.scene(), state->config).empty() && !IsByHand(node);
   summary.physics.mu_tip = job.scene().fingertips.friction;
   summary.physics.max_force_N = job.scene().fingertips.max_force;
   summary.physics.dt = job.world().config().dt;

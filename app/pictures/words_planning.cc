@@ -93,15 +93,18 @@ Lines Describe(const Scene& /*scene*/, const PruneFacts& facts) {
 }
 
 Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
-  const bool paper = facts.order == "paper";
+  const bool paper = facts.order == "paper", by_hand = facts.order == "hand";
   Lines lines = {
-      paper ? fmt::format("Path {}: of all paths of {} contact states the one with rank {} by the "
-                          "sum of its scores.",
-                          facts.rank, facts.nodes.size(), facts.rank)
-            : fmt::format("Path {}: of all first states that a fingertip can touch and that no "
-                          "path has tried, the best by its score over 1 + {:g}, for what the paths "
-                          "before it have in common with it.",
-                          facts.rank, facts.repeats),
+      by_hand ? fmt::format("A path of {} contact states that a script put together.",
+                            facts.nodes.size())
+      : paper
+          ? fmt::format("Path {}: of all paths of {} contact states the one with rank {} by the "
+                        "sum of its scores.",
+                        facts.rank, facts.nodes.size(), facts.rank)
+          : fmt::format("Path {}: of all first states that a fingertip can touch and that no "
+                        "path has tried, the best by its score over 1 + {:g}, for what the paths "
+                        "before it have in common with it.",
+                        facts.rank, facts.repeats),
       fmt::format("score\t{:.3f}", facts.score)};
   if (facts.num_tied > 1) {
     lines[0] += fmt::format(
@@ -111,7 +114,7 @@ Lines Describe(const Scene& /*scene*/, const PathFacts& facts) {
                                    : "the order of some is that of their states' numbers");
   }
   constexpr double kLeast = PathExplorer::kLeastScore;
-  if (!paper && facts.value * (1.0 + facts.repeats) <= kLeast * (1.0 + 1e-12)) {
+  if (!paper && !by_hand && facts.value * (1.0 + facts.repeats) <= kLeast * (1.0 + 1e-12)) {
     lines[0] += fmt::format(" Scores below {:g} % of the best count as that.", 100.0 * kLeast);
   }
   for (std::size_t i = 0; i < facts.nodes.size(); ++i) {
