@@ -38,19 +38,21 @@ Json ManifestFields(const RunInfo& info, const std::string& step,
                     const nlohmann::json& configuration) {
   std::map<std::string, std::string> libraries = BuildLibraries();
   libraries.insert(info.libraries.begin(), info.libraries.end());
-  return {{"planner_version", ProgramVersion()},
-          {"git_hash", GitHash()},
-          {"program_sha256", Sha256OfProgram()},
-          {"compiler", Compiler()},
-          {"processor", ProcessorFeatures()},
-          {"libraries", libraries},
-          {"inputs", info.inputs},
-          {"command", info.command},
-          {"scene_file", info.scene_file},
-          {"seed", info.seed},
-          {"step", step},
-          {"settings_at_start", info.settings_at_start},
-          {"configuration", configuration}};
+  Json fields = {{"planner_version", ProgramVersion()},
+                 {"git_hash", GitHash()},
+                 {"program_sha256", Sha256OfProgram()},
+                 {"compiler", Compiler()},
+                 {"processor", ProcessorFeatures()},
+                 {"libraries", libraries},
+                 {"inputs", info.inputs},
+                 {"command", info.command},
+                 {"scene_file", info.scene_file},
+                 {"seed", info.seed},
+                 {"step", step},
+                 {"settings_at_start", info.settings_at_start},
+                 {"configuration", configuration}};
+  if (!info.error.empty()) fields["error"] = info.error;
+  return fields;
 }
 
 bool IsStepId(const std::string& id) {
@@ -151,6 +153,8 @@ void RunDirectory::AddRolloutRow(const WorldState& state) {
                  state.bodies.size());
   impl_->rollout.Write(RolloutRow(state));
 }
+
+void RunDirectory::SetError(std::string error) { impl_->info.error = std::move(error); }
 
 void RunDirectory::Finish(RunSummary summary, const std::string& step,
                           const nlohmann::json& configuration) {

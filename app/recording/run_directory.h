@@ -26,6 +26,7 @@ struct RunInfo {  // NOLINT(bugprone-exception-escape): moving JSON does not thr
   std::string scene_file;  ///< as the user gave it; may be empty
   /// The planner's fields before any command, by full name: what a replay begins with.
   nlohmann::json settings_at_start = nlohmann::json::object();
+  std::string error = {};  ///< that ended the run before its time; empty for none
 };
 
 /// The name under frames/ of the picture of step `number` (from 1): 1 and "scene.start" give
@@ -66,6 +67,9 @@ class RunDirectory {
 
   /// Appends one row to rollout.csv. `state` is one of a world of this scene.
   void AddRolloutRow(const WorldState& state);
+
+  /// What ended the run before its time, for manifest.json.
+  void SetError(std::string error);
 
   /// Writes summary.json and manifest.json, closes everything and puts the run at DIR. Also for an
   /// interrupted run, with status "interrupted": what was recorded until then is a valid run.

@@ -30,6 +30,7 @@ class Recorder {
   void Finish(const Timeline::Node& node, RunSummary summary);
 
   std::filesystem::path directory() const { return run_.directory(); }
+  void SetError(std::string error) { run_.SetError(std::move(error)); }
 
  private:
   void Draw(const Timeline::Node& node, const Shot& shot);

@@ -84,8 +84,8 @@ std::unique_ptr<Recorder> Session::OpenRecorder(const std::filesystem::path& dir
   info.scene_file = SceneLabel(scene());
   info.inputs = HashInputs(config_.weights);
   info.settings_at_start = PlannerSettings(config_.planner);
-  auto recorder = std::make_unique<Recorder>(
-      directory, *timeline_, config_.pictures.value_or(pictures), *drawer_, std::move(info));
+  auto recorder =
+      std::make_unique<Recorder>(directory, *timeline_, pictures, *drawer_, std::move(info));
   for (const auto& node : timeline_->nodes()) {
     recorder->Add(*node);
     const auto shot = shots_.find(node->number);
@@ -99,7 +99,7 @@ void Session::Record(const std::filesystem::path& directory, PictureMode picture
     throw InputError("", "dir", "one recording at a time",
                      "a second one, while " + recorder_->directory().string() + " is open");
   }
-  recorder_ = OpenRecorder(directory, pictures);
+  recorder_ = OpenRecorder(directory, config_.pictures.value_or(pictures));
 }
 
 // A summary of grasps says whether the object could be grasped at the start.
@@ -133,15 +133,30 @@ std::filesystem::path Session::Save(const std::optional<std::filesystem::path>& 
   }
   if (!directory) throw InputError("", "dir", "a folder, as nothing is recorded", "nothing");
   CompleteVerdict();
-  const std::unique_ptr<Recorder> recorder = OpenRecorder(*directory, PictureMode::kKey);
+  const std::unique_ptr<Recorder> recorder =
+      OpenRecorder(*directory, config_.pictures.value_or(PictureMode::kKey));
   Finish(*recorder, std::nullopt, node);
   return *directory;
 }
 
-void Session::FinishRecording(const std::optional<std::string>& status, const Node* node) {
+void Session::SaveState(const std::filesystem::path& directory, const Node& node) {
+  const std::unique_ptr<Recorder> recorder = OpenRecorder(directory, PictureMode::kNone);
+  Finish(*recorder, std::nullopt, &node);
+}
+
+void Session::Restore(std::vector<StepFacts> steps, double tolerance) {
+  for (StepFacts& step : steps) {
+    const Node& node = timeline_->Restore(std::move(step), tolerance);
+    if (node.command.verb == Verb::kSettle) start_ = &node;
+  }
+}
+
+void Session::FinishRecording(const std::optional<std::string>& status, const Node* node,
+                              const std::string& error) {
   if (!recorder_) return;
   if (!status) CompleteVerdict();
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
+  recorder->SetError(error);
   Finish(*recorder, status, node);
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/core/memory_claim.h"
 #include "app/job/timeline.h"
@@ -66,9 +67,18 @@ class Session {
                              const Node* node = nullptr);
 
   /// Ends the run directory that is recorded to, if there is one.
-  /// @param status  of the summary in place of its own: "interrupted".
+  /// @param status  of the summary in place of its own: "interrupted", "failed".
+  /// @param error   what it failed for, for the manifest.
   void FinishRecording(const std::optional<std::string>& status = std::nullopt,
-                       const Node* node = nullptr);
+                       const Node* node = nullptr, const std::string& error = "");
+
+  /// Writes a finished run directory with everything up to now, without pictures, and without
+  /// asking what the summary of a whole run would: ResumeSession goes on from it.
+  /// @param node  where it stands.
+  void SaveState(const std::filesystem::path& directory, const Node& node);
+
+  /// Takes the steps of a recorded run, the first being the start's (Timeline::Restore).
+  void Restore(std::vector<StepFacts> steps, double tolerance);
 
   bool recording() const { return recorder_ != nullptr; }
 
@@ -76,6 +86,7 @@ class Session {
   MemoryClaim& claim() { return claim_; }
 
  private:
+  // @param pictures  whatever --pictures says.
   std::unique_ptr<Recorder> OpenRecorder(const std::filesystem::path& directory,
                                          PictureMode pictures);
   void Finish(Recorder& recorder, const std::optional<std::string>& status, const Node* node);

@@ -17,7 +17,7 @@
 #include "app/recording/checked_file.h"
 #include "app/recording/loaded_run.h"
 #include "app/recording/scene_file.h"
-#include "app/session/session.h"
+#include "app/session/saved_state.h"
 
 namespace pregrasp {
 namespace {
@@ -57,20 +57,6 @@ std::vector<std::string> ReadLinesOf(const fs::path& file) {
   return lines;
 }
 
-SessionConfig MakeSessionConfig(const nlohmann::json& manifest, const fs::path& run,
-                                const VerifyConfig& config) {
-  const std::string where = (run / "manifest.json").string();
-  const JsonReader reader(manifest, where);
-  SessionConfig session;
-  if (!reader["seed"].json().is_number_unsigned()) reader["seed"].Fail("a whole number from 0");
-  session.seed = manifest["seed"].get<std::uint64_t>();
-  session.threads = config.threads;
-  session.pictures = PictureMode::kNone;
-  ApplySettings(reader["settings_at_start"].json(), session.planner);
-  session.weights = config.weights;
-  return session;
-}
-
 }  // namespace
 
 Provenance FindProvenance(const fs::path& run, const fs::path& weights) {
@@ -102,7 +88,8 @@ void RecomputeRun(const fs::path& run, const fs::path& target, const VerifyConfi
   const nlohmann::json manifest = LoadManifest(run);
   const std::vector<Command> journal = LoadJournal(run);
   const std::vector<std::string> lines = ReadLinesOf(run / "steps.jsonl");
-  Session session(LoadScene(run / "scene.json"), MakeSessionConfig(manifest, run, config));
+  Session session(LoadScene(run / "scene.json"),
+                  RunSessionConfig(run, config.threads, config.weights));
   session.Record(target, PictureMode::kNone);
   Timeline& timeline = session.timeline();
   for (std::size_t i = 0; i < journal.size(); ++i) {
@@ -128,10 +115,10 @@ void RecomputeRun(const fs::path& run, const fs::path& target, const VerifyConfi
   }
   const nlohmann::json summary =
       ParseJson(ReadFile(run / "summary.json"), (run / "summary.json").string());
-  // Whether the user interrupted it is not of the run's making.
+  // Whether the user interrupted it, or the script failed, is not of the run's making.
   std::optional<std::string> status;
-  if (summary.is_object() && summary.value("status", nlohmann::json()) == "interrupted") {
-    status = "interrupted";
+  for (const char* ended : {"interrupted", "failed"}) {
+    if (summary.is_object() && summary.value("status", nlohmann::json()) == ended) status = ended;
   }
   const JsonReader step(manifest, (run / "manifest.json").string());
   try {
