@@ -16,6 +16,7 @@
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
+#include "app/recording/build_info.h"
 
 namespace pregrasp {
 namespace {
@@ -67,6 +68,8 @@ int Run(int argc, char** argv) {
                "pregrasp");
   app.require_subcommand(0, 1);
   app.set_help_flag("-h,--help", "This text");
+  app.set_version_flag("--version", "pregrasp " + std::string(ProgramVersion()),
+                       "The program's version");
   app.footer(
       "Exit codes: 0 done; 2 bad input, one line says what; 3 planned without success; 1 a bug of "
       "ours, or output, memory or threads that cannot be had.");

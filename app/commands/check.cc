@@ -28,6 +28,7 @@ struct CheckOptions {
   std::uint64_t seed = 1;
   bool no_grasps = false;
   MeshCheck mesh;
+  int threads = 0;
 };
 
 const char* SeverityName(CheckFinding::Severity severity) {
@@ -67,7 +68,7 @@ int Check(const CheckOptions& options) {
   }
   if (errors > 0) return 2;
   if (!options.no_grasps) {
-    ThreadPool pool;
+    ThreadPool pool(options.threads);
     const StartCertificate start = FindSceneVerdict(scene, *JobSetup().hand, options.seed,
                                                     DataFolder() / "assets" / "weights", pool);
     const bool graspable = start.verdict == StartVerdict::kGraspable;
@@ -101,6 +102,9 @@ void AddCheck(const Subcommand& app, Action& action) {
                   "Of a mesh file: mend what repair = true in a scene would");
   command.Add("--picture", options->mesh.picture,
               "Of a mesh file: FILE.png that shows it, open edges in red");
+  command.Add("--threads", options->threads, "Threads; 0 is one per processor")
+      .Within(ThreadPool::kThreads)
+      .ShowDefault();
   command.OnChosen([options, &action] { action = [options] { return Check(*options); }; });
 }
 

@@ -13,6 +13,8 @@ ProgressLine::~ProgressLine() { Clear(); }
 
 void ProgressLine::Clear() {
   if (terminal_ && !stage_.empty()) fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  stage_.clear();
 }
 
 void ProgressLine::Show(const std::string& stage, int done, int total) {

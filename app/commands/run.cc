@@ -91,6 +91,7 @@ int Run(const RunOptions& options) {
         });
     line.Show("pictures and log", 0, 1);
     session.FinishRecording(std::nullopt, result.end);
+    line.Clear();
     Print(session.timeline(), result, out);
     return result.status == "ok" ? 0 : kNoSuccess;
   } catch (const Interrupted&) {
