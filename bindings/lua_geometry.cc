@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <map>
+#include <utility>
+
 #include "app/geometry/contact_mesh.h"
 #include "app/geometry/point_cloud.h"
 #include "app/geometry/signed_distance.h"
@@ -9,7 +13,9 @@ namespace {
 
 const Schema kCloud{"Cloud", {"count", "points", "normals"}};
 const Schema kDistance{"Distance", {"phi", "nhat"}};
-const Schema kMesh{"Mesh", {"num_vertices", "num_triangles", "vertices", "triangles"}};
+const Schema kMesh{"Mesh",
+                   {"num_vertices", "num_triangles", "vertices", "triangles", "normals", "areas",
+                    "centres", "neighbors"}};
 
 constexpr int kMaxPoints = 4096;  // farthest-point sampling grows with the square
 
@@ -40,6 +46,38 @@ Pushed PushContactMesh(lua_State* L, Session& session, int triangles) {
   return {1};
 }
 
+namespace {
+
+// Of each triangle those that share an edge with it, from 1.
+std::vector<std::vector<int>> FindNeighbors(const TriangleMesh& mesh) {
+  std::map<std::pair<int, int>, std::vector<int>> triangles_of_edge;
+  for (int t = 0; t < mesh.F.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = mesh.F(t, k), b = mesh.F(t, (k + 1) % 3);
+      triangles_of_edge[std::minmax(a, b)].push_back(t);
+    }
+  }
+  std::vector<std::vector<int>> neighbors(static_cast<std::size_t>(mesh.F.rows()));
+  for (const auto& [edge, triangles] : triangles_of_edge) {
+    for (const int t : triangles) {
+      for (const int other : triangles) {
+        if (other != t) neighbors[static_cast<std::size_t>(t)].push_back(other + 1);
+      }
+    }
+  }
+  for (std::vector<int>& list : neighbors) std::sort(list.begin(), list.end());
+  return neighbors;
+}
+
+}  // namespace
+
+TriangleShape CalcTriangleShape(const TriangleMesh& mesh, int triangle) {
+  const auto corner = [&](int k) -> Vector3 { return mesh.V.row(mesh.F(triangle, k)).transpose(); };
+  const Vector3 cross = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+  const Vector3 centre = (corner(0) + corner(1) + corner(2)) / 3.0;
+  return {centre, cross.normalized(), 0.5 * cross.norm()};
+}
+
 void PushMesh(lua_State* L, const TriangleMesh& mesh) {
   RecordWriter record(L, kMesh);
   record.Set("num_vertices", static_cast<int>(mesh.V.rows()))
@@ -47,6 +85,16 @@ void PushMesh(lua_State* L, const TriangleMesh& mesh) {
       .Set("vertices", mesh.V);
   LuaMatrix<3, int>::Push(L, mesh.F, 1);  // Lua counts from 1
   record.SetTop("triangles");
+  std::vector<Vector3> normals, centres;
+  std::vector<double> areas;
+  for (int t = 0; t < mesh.F.rows(); ++t) {
+    const TriangleShape shape = CalcTriangleShape(mesh, t);
+    normals.push_back(shape.nhat_O);
+    areas.push_back(shape.area);
+    centres.push_back(shape.p_OCentre);
+  }
+  record.Set("normals", normals).Set("areas", areas).Set("centres", centres);
+  record.Set("neighbors", FindNeighbors(mesh));
 }
 
 std::vector<const Schema*> GeometrySchemas() { return {&kCloud, &kDistance, &kMesh}; }

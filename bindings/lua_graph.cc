@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "app/core/interrupt.h"
 #include "app/pictures/words.h"
 #include "bindings/lua_planner.h"
 
@@ -12,6 +13,11 @@ namespace {
 const Schema kContactState{"ContactState",
                            {"id", "thumb", "index", "s_c", "s_n", "rank_c", "rank_n", "occluded",
                             "thumb_fits", "index_fits", "initial", "kept"}};
+const Schema kNodeKey{"NodeKey", {"thumb", "index"}};
+const Schema kTrianglesOptions{"TrianglesOptions", {"finger", "count"}};
+const Schema kTriangleScore{
+    "TriangleScore",
+    {"triangle", "finger", "best", "mean", "node", "kept", "fits", "p_OCentre", "nhat_O", "area"}};
 const Schema kSibling{"Sibling", {"nodes", "score", "behind"}};
 
 constexpr int kGraphKib = 300;
@@ -73,6 +79,56 @@ void RequireScores(const ContactGraph& graph) {
     throw InputError("", "", "a graph with scores", "one without: call score() first");
 }
 
+// A node by its id, or by its triangles: {thumb = 3, index = 17}.
+struct NodeKey {
+  std::optional<int> id;
+  int thumb = 0, index = 0;
+
+  // @throws InputError for triangles that the graph does not have.
+  int Find(const ContactGraph& graph) const {
+    if (id) return *id;
+    const int count = graph.num_triangles();
+    for (const auto& [name, triangle] : {std::pair("thumb", thumb), std::pair("index", index)}) {
+      if (triangle >= 0 && triangle < count) continue;
+      throw InputError("", name, fmt::format("a triangle from 0 to {}", count - 1),
+                       std::to_string(triangle));
+    }
+    return thumb * count + index;
+  }
+};
+
+struct TrianglesOptions {
+  Finger finger = Finger::kThumb;
+  int count = 10;
+};
+
+}  // namespace
+
+template <>
+struct LuaValue<NodeKey> {
+  static NodeKey Read(lua_State* L, int index, const std::string& path) {
+    if (!lua_istable(L, index)) return {LuaValue<int>::Read(L, index, path)};
+    const Fields fields(L, index, kNodeKey);
+    return {std::nullopt, fields.Required<int>("thumb"), fields.Required<int>("index")};
+  }
+};
+
+template <>
+struct LuaValue<TrianglesOptions> {
+  static TrianglesOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    const Fields fields(L, index, kTrianglesOptions);
+    TrianglesOptions options;
+    options.finger = fields.Optional<Finger>("finger", options.finger);
+    options.count = fields.Optional<int>("count", options.count);
+    if (options.finger != Finger::kThumb && options.finger != Finger::kIndex) {
+      fields.Refuse("finger", "\"thumb\" or \"index\"");
+    }
+    return options;
+  }
+};
+
+namespace {
+
 // Methods of a graph.
 
 void GraphScore(lua_State* L, LuaGraph& graph) {
@@ -115,13 +171,79 @@ Pushed GraphFork(lua_State* L, LuaGraph& graph) {
   return {1};
 }
 
-Pushed GraphWhy(lua_State* L, LuaGraph& graph, int id) {
-  PushObject(L, std::make_shared<LuaReason>(LuaReason{graph.graph()->Why(id)}));
+void GraphForward(LuaGraph& graph, const std::optional<int>& steps) {
+  graph.Forward(steps.value_or(1));
+}
+
+Pushed GraphWhy(lua_State* L, LuaGraph& graph, const NodeKey& node) {
+  const auto of = graph.graph();
+  PushObject(L, std::make_shared<LuaReason>(LuaReason{of->Why(node.Find(*of))}));
   return {1};
 }
 
-Pushed GraphNode(lua_State* L, LuaGraph& graph, int id) {
-  PushNode(L, graph.graph()->Why(id).node);
+Pushed GraphNode(lua_State* L, LuaGraph& graph, const NodeKey& node) {
+  const auto of = graph.graph();
+  PushNode(L, of->Why(node.Find(*of)).node);
+  return {1};
+}
+
+// The triangles by the best score that a node with the finger there has.
+Pushed GraphTriangleScores(lua_State* L, LuaGraph& graph, const TrianglesOptions& options) {
+  const auto of = graph.graph();
+  RequireScores(*of);
+  struct Triangle {
+    int triangle = 0, kept = 0, count = 0;
+    const ContactNode* best = nullptr;
+    double sum = 0.0;
+    bool fits = false;
+  };
+  const bool thumb = options.finger == Finger::kThumb;
+  std::vector<Triangle> triangles(static_cast<std::size_t>(of->num_triangles()));
+  for (const ContactNode& node : of->nodes()) {
+    const int number = thumb ? node.thumb : node.index;
+    Triangle& triangle = triangles[static_cast<std::size_t>(number)];
+    triangle.triangle = number;
+    triangle.kept += node.kept ? 1 : 0;
+    triangle.sum += node.s_c;
+    ++triangle.count;
+    triangle.fits = thumb ? node.thumb_fits : node.index_fits;
+    if (triangle.best == nullptr || node.rank_c < triangle.best->rank_c) triangle.best = &node;
+  }
+  std::sort(triangles.begin(), triangles.end(),
+            [](const Triangle& a, const Triangle& b) { return a.best->rank_c < b.best->rank_c; });
+  const int shown = std::clamp(options.count, 0, of->num_triangles());
+  lua_createtable(L, shown, 0);
+  for (int i = 0; i < shown; ++i) {
+    const Triangle& triangle = triangles[static_cast<std::size_t>(i)];
+    const TriangleShape shape = CalcTriangleShape(of->mesh(), triangle.triangle);
+    RecordWriter(L, kTriangleScore)
+        .Set("triangle", triangle.triangle)
+        .Set("finger", options.finger)
+        .Set("best", triangle.best->s_c)
+        .Set("mean", triangle.sum / triangle.count)
+        .Set("node", triangle.best->id)
+        .Set("kept", triangle.kept)
+        .Set("fits", triangle.fits)
+        .Set("p_OCentre", shape.p_OCentre)
+        .Set("nhat_O", shape.nhat_O)
+        .Set("area", shape.area);
+    lua_rawseti(L, -2, i + 1);
+  }
+  return {1};
+}
+
+// A path of these nodes, by their ids or triangles, as a step.
+Pushed GraphPath(lua_State* L, LuaGraph& graph, const std::vector<NodeKey>& nodes) {
+  if (!IsConnected(graph)) {
+    throw InputError("", "nodes", "a graph that has been pruned", "one that has not");
+  }
+  const auto of = graph.graph();
+  nlohmann::json ids = nlohmann::json::array();
+  for (const NodeKey& node : nodes) ids.push_back(node.Find(*of));
+  auto path = std::make_shared<LuaPath>(LuaPath{{graph.session, graph.node}, nullptr});
+  path->cursor.Do(Verb::kPath, {{"nodes", std::move(ids)}});
+  path->path = path->cursor.state()->path;
+  PushObject(L, std::move(path));
   return {1};
 }
 
@@ -153,6 +275,7 @@ Pushed GraphPaths(lua_State* L, LuaGraph& graph, const PathsOptions& options) {
   LuaPaths paths{{graph.session, graph.node, options.ToSettings()}};
   PlannerConfig config = graph.state()->config;
   ApplySettings(paths.settings, config);
+  paths.filter = options.filter;
   paths.order = config.order;
   paths.stages = config.stages;
   graph.state()->paths->Count(paths.order, paths.stages);  // refuses what cannot be
@@ -236,14 +359,37 @@ std::shared_ptr<LuaPath> FindPath(const LuaPaths& paths, int rank) {
       LuaPath{{paths.session, paths.node, paths.settings}, std::move(found)});
 }
 
+// Whether the script's filter lets it count.
+bool Counts(lua_State* L, const LuaPaths& paths, const std::shared_ptr<LuaPath>& path) {
+  if (!paths.filter) return true;
+  const StandStill still(L, paths.session.get());
+  luaL_checkstack(L, 4, "a filter");
+  paths.filter->Push(L);
+  PushObject(L, path);
+  return AskFunction(L);
+}
+
+// The first path from `rank` on that counts, and its rank; null after the last one.
+std::shared_ptr<LuaPath> FindNext(lua_State* L, const LuaPaths& paths, int rank) {
+  for (;; ++rank) {
+    ThrowIfInterrupted();
+    if (rank > kMostPaths) {
+      throw InputError("", "filter", fmt::format("a yes to one of the first {} paths", kMostPaths),
+                       "none");
+    }
+    std::shared_ptr<LuaPath> path = FindPath(paths, rank);
+    if (!path || Counts(L, paths, path)) return path;
+  }
+}
+
 Pushed PathsNext(lua_State* L, LuaPaths& paths) {
-  const std::shared_ptr<LuaPath> path = FindPath(paths, paths.next);
+  const std::shared_ptr<LuaPath> path = FindNext(L, paths, paths.next);
   if (!path) {
     lua_pushnil(L);
     return {1};
   }
   path->Record();
-  ++paths.next;
+  paths.next = path->path->rank + 1;
   PushObject(L, path);
   return {1};
 }
@@ -253,13 +399,22 @@ Pushed PathsTop(lua_State* L, LuaPaths& paths, int count) {
     throw InputError("", "count", "0 to 100000", std::to_string(count));
   }
   lua_createtable(L, 0, 0);
-  for (int rank = 1; rank <= count; ++rank) {
-    const std::shared_ptr<LuaPath> path = FindPath(paths, rank);
+  int rank = 1;
+  for (int i = 1; i <= count; ++i) {
+    const std::shared_ptr<LuaPath> path = FindNext(L, paths, rank);
     if (!path) break;
+    rank = path->path->rank + 1;
     PushObject(L, path);
-    lua_rawseti(L, -2, rank);
+    lua_rawseti(L, -2, i);
   }
   return {1};
+}
+
+// Why a path has its rank.
+Pushed PathsWhy(lua_State* L, LuaPaths& paths, int rank) {
+  const std::shared_ptr<LuaPath> path = rank < 1 ? nullptr : FindPath(paths, rank);
+  if (!path) throw InputError("", "rank", "the rank of a path", std::to_string(rank));
+  return PushExplanation(L, ExplainPath(path->GetFacts()));
 }
 
 // paths[i], from 1; nil beyond the last one.
@@ -267,7 +422,12 @@ Pushed PathsItem(lua_State* L, LuaPaths& paths, int number) {
   if (number < 1 || number > kMostPaths) {
     throw InputError("", "number", "1 to 100000", std::to_string(number));
   }
-  const std::shared_ptr<LuaPath> path = FindPath(paths, number);
+  std::shared_ptr<LuaPath> path = FindPath(paths, paths.filter ? 1 : number);
+  for (int i = 1, rank = 1; paths.filter && i <= number; ++i) {
+    path = FindNext(L, paths, rank);
+    if (!path) break;
+    rank = path->path->rank + 1;
+  }
   path ? PushObject(L, path) : lua_pushnil(L);
   return {1};
 }
@@ -288,6 +448,18 @@ int PathsToString(lua_State* L) {
 }
 
 // One path.
+
+Pushed PathWhy(lua_State* L, LuaPath& path) {
+  return PushExplanation(L, ExplainPath(path.GetFacts()));
+}
+
+// Why it is not before another.
+Pushed PathWhyNot(lua_State* L, LuaPath& path, LuaPath& other) {
+  if (path.path->rank == 0 || other.path->rank == 0) {
+    throw InputError("", "other", "paths that have a rank", "one that was put together by hand");
+  }
+  return PushExplanation(L, ExplainOrder(path.GetFacts(), other.GetFacts()));
+}
 
 void PathShot(lua_State* L, LuaPath& path, const ShotOptions& options) {
   path.Record();
@@ -311,8 +483,10 @@ Pushed PathNodes(lua_State* L, LuaPath& path) {
   return {1};
 }
 Pushed PathSiblings(lua_State* L, LuaPath& path) {
+  const bool by_hand = path.path->rank == 0;
   const std::vector<ContactPath> siblings =
-      FindSiblings(*path.cursor.state()->graph, *path.path, kSiblings);
+      by_hand ? std::vector<ContactPath>{}
+              : FindSiblings(*path.cursor.state()->graph, *path.path, kSiblings);
   lua_createtable(L, static_cast<int>(siblings.size()), 0);
   for (std::size_t i = 0; i < siblings.size(); ++i) {
     RecordWriter(L, kSibling)
@@ -331,14 +505,23 @@ int PathToString(lua_State* L) {
     std::string nodes;
     for (const int id : path->path->nodes)
       nodes += fmt::format("{}{}", nodes.empty() ? "" : " > ", id);
-    text =
-        fmt::format("Path(rank {}, {}, score {:.3f})", path->path->rank, nodes, path->path->score);
+    text = fmt::format("Path({}, {}, score {:.3f})",
+                       path->path->rank == 0 ? "by hand" : fmt::format("rank {}", path->path->rank),
+                       nodes, path->path->score);
   }
   lua_pushlstring(L, text.data(), text.size());
   return 1;
 }
 
 }  // namespace
+
+PathFacts LuaPath::GetFacts() const {
+  if (recorded()) return std::get<PathFacts>(cursor.node->facts.details);
+  nlohmann::json options = {{"rank", path->rank}};
+  if (!cursor.settings.empty()) options["settings"] = cursor.settings;
+  const Applied applied = cursor.session->timeline().Try(*cursor.node, Verb::kPath, options);
+  return std::get<PathFacts>(applied.facts.details);
+}
 
 void LuaPath::Record() {
   if (!recorded()) cursor.Do(Verb::kPath, {{"rank", path->rank}});
@@ -364,10 +547,14 @@ const ClassInfo& GraphClass() {
                                   Query<&GraphWhy>("why", "id"),
                                   Query<&GraphWhy>("why_not", "id"),
                                   Query<&GraphNode>("node", "id"),
+                                  Query<&GraphTriangleScores>("triangles", "options"),
                                   Query<&GraphTop>("top", "count"),
                                   Query<&GraphNeighbors>("neighbors", "id"),
                                   Method<&GraphPaths>("paths", "options"),
+                                  Method<&GraphPath>("path", "nodes"),
+                                  Method<&GraphWhatIf>("what_if", "options"),
                                   Method<&GraphBack>("back", "steps"),
+                                  Method<&GraphForward>("forward", "steps"),
                                   Query<&GraphFork>("fork"),
                                   Method<&GraphShot>("shot", "options"),
                               },
@@ -410,6 +597,7 @@ const ClassInfo& PathsClass() {
                               {
                                   Method<&PathsNext>("next"),
                                   Method<&PathsTop>("top", "count"),
+                                  Query<&PathsWhy>("why", "rank"),
                               },
                               {
                                   Property<&PathsCount>("count"),
@@ -425,6 +613,8 @@ const ClassInfo& PathClass() {
   static const ClassInfo info{"Path",
                               {
                                   Method<&PathOptimize>("optimize", "options"),
+                                  Query<&PathWhy>("why"),
+                                  Query<&PathWhyNot>("why_not", "other"),
                                   Method<&PathShot>("shot", "options"),
                               },
                               {
@@ -441,6 +631,8 @@ const ClassInfo& PathClass() {
   return info;
 }
 
-std::vector<const Schema*> GraphSchemas() { return {&kContactState, &kSibling}; }
+std::vector<const Schema*> GraphSchemas() {
+  return {&kContactState, &kNodeKey, &kTrianglesOptions, &kTriangleScore, &kSibling};
+}
 
 }  // namespace pregrasp

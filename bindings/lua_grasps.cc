@@ -40,6 +40,17 @@ Pushed GraspsItem(lua_State* L, LuaGrasps& grasps, int number) {
   return {1};
 }
 
+GraspWithLift FactsOf(const LuaGrasp& grasp) {
+  return {&grasp.facts(),
+          grasp.lift == nullptr ? nullptr : &std::get<LiftFacts>(grasp.lift->facts.details)};
+}
+
+Pushed GraspsWhy(lua_State* L, LuaGrasps& grasps) {
+  std::vector<GraspWithLift> all;
+  for (const auto& grasp : grasps.grasps) all.push_back(FactsOf(*grasp));
+  return PushExplanation(L, ExplainGrasps(all));
+}
+
 int GraspsCount(LuaGrasps& grasps) { return static_cast<int>(grasps.grasps.size()); }
 int GraspsFeasible(LuaGrasps& grasps) { return grasps.node->progress.feasible; }
 int GraspsLifting(LuaGrasps& grasps) { return grasps.node->progress.lifted; }
@@ -73,6 +84,11 @@ int GraspsToString(lua_State* L) {
 }
 
 // One grasp.
+
+Pushed GraspWhy(lua_State* L, LuaGrasp& grasp) {
+  const GraspWithLift facts = FactsOf(grasp);
+  return PushExplanation(L, ExplainGrasp(*facts.grasp, facts.lift));
+}
 
 void GraspShot(lua_State* L, LuaGrasp& grasp, const ShotOptions& options) {
   TakeShot(L, *grasp.all.session, *grasp.step, options);
@@ -149,6 +165,22 @@ int GraspToString(lua_State* L) {
 
 }  // namespace
 
+std::shared_ptr<LuaGrasps> FindGrasps(const std::shared_ptr<Session>& session,
+                                      const Timeline::Node& certified, nlohmann::json options) {
+  const Timeline::Node& end = CompleteGrasps(session->timeline(), certified, std::move(options));
+  auto grasps = std::make_shared<LuaGrasps>(LuaGrasps{{session, &end}, {}});
+  for (const Timeline::Node* node : PathTo(end)) {
+    if (node->number <= certified.number) continue;
+    if (std::holds_alternative<GraspFacts>(node->facts.details)) {
+      grasps->grasps.push_back(
+          std::make_shared<LuaGrasp>(LuaGrasp{{session, &end}, node, nullptr}));
+    } else if (const auto* lift = std::get_if<LiftFacts>(&node->facts.details)) {
+      grasps->grasps[static_cast<std::size_t>(lift->grasp) - 1]->lift = node;
+    }
+  }
+  return grasps;
+}
+
 Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOptions& options) {
   nlohmann::json command = nlohmann::json::object();
   if (!options.fields.empty()) command["settings"] = options.ToSettings();
@@ -157,17 +189,10 @@ Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOpt
     PushObject(L, std::make_shared<LuaGrasps>(LuaGrasps{{session, trajectory.node}, {}}));
     return {1};
   }
-  const Timeline::Node& end =
-      CompleteGrasps(session->timeline(), *trajectory.node, std::move(command));
-  auto grasps = std::make_shared<LuaGrasps>(LuaGrasps{{session, &end}, {}});
-  for (const Timeline::Node* node : PathTo(end)) {
-    if (node->number <= trajectory.node->number) continue;
-    if (std::holds_alternative<GraspFacts>(node->facts.details)) {
-      grasps->grasps.push_back(
-          std::make_shared<LuaGrasp>(LuaGrasp{{session, &end}, node, nullptr}));
-    } else if (const auto* lift = std::get_if<LiftFacts>(&node->facts.details)) {
-      grasps->grasps[static_cast<std::size_t>(lift->grasp) - 1]->lift = node;
-    }
+  auto grasps = FindGrasps(session, *trajectory.node, std::move(command));
+  for (const auto& grasp : grasps->grasps) {
+    if (StopsAt(L, session, *grasp->step)) break;
+    if (grasp->lift != nullptr && StopsAt(L, session, *grasp->lift)) break;
   }
   CountMemory(L, kGraspKib * static_cast<int>(grasps->grasps.size()));
   PushObject(L, std::move(grasps));
@@ -180,6 +205,7 @@ const ClassInfo& GraspsClass() {
                               {
                                   Method<&GraspsAll>("all"),
                                   Method<&GraspsBest>("best"),
+                                  Query<&GraspsWhy>("why"),
                               },
                               {
                                   Property<&GraspsCount>("count"),
@@ -198,6 +224,7 @@ const ClassInfo& GraspClass() {
   static const ClassInfo info{"Grasp",
                               {
                                   Method<&GraspMotion>("motion", "options"),
+                                  Query<&GraspWhy>("why"),
                                   Method<&GraspShot>("shot", "options"),
                               },
                               {

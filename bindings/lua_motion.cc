@@ -126,6 +126,21 @@ void MotionBack(LuaMotion& motion, const std::optional<int>& steps) {
   motion.Back(steps.value_or(1), motion.first);
 }
 
+void MotionForward(LuaMotion& motion, const std::optional<int>& steps) {
+  motion.Forward(steps.value_or(1));
+}
+
+Pushed MotionWhy(lua_State* L, LuaMotion& motion) {
+  if (const auto* facts = std::get_if<MotionFacts>(&motion.node->facts.details)) {
+    return PushExplanation(L, ExplainMotionEnd(*facts));
+  }
+  const auto* keyframe = std::get_if<FrameFacts>(&motion.node->facts.details);
+  if (keyframe == nullptr) {
+    throw InputError("", "", "a motion with a keyframe", "one before its first step()");
+  }
+  return PushExplanation(L, ExplainFrame(*keyframe, motion.state()->config.motion));
+}
+
 void MotionShot(lua_State* L, LuaMotion& motion, const ShotOptions& options) {
   TakeShot(L, *motion.session, *motion.node, options);
 }
@@ -176,6 +191,12 @@ int MotionToString(lua_State* L) {
 }
 
 // A frame.
+
+Pushed FrameWhy(lua_State* L, LuaFrame& frame) {
+  return PushExplanation(
+      L,
+      ExplainFrame(frame.facts(), frame.session->timeline().GetState(*frame.node)->config.motion));
+}
 
 void FrameShot(lua_State* L, LuaFrame& frame, const ShotOptions& options) {
   TakeShot(L, *frame.session, *frame.node, options);
@@ -257,6 +278,8 @@ const ClassInfo& MotionClass() {
                                   Method<&MotionStep>("step"),
                                   Method<&MotionFinish>("finish"),
                                   Method<&MotionBack>("back", "steps"),
+                                  Method<&MotionForward>("forward", "steps"),
+                                  Query<&MotionWhy>("why"),
                                   Method<&MotionShot>("shot", "options"),
                               },
                               {
@@ -275,6 +298,7 @@ const ClassInfo& MotionClass() {
 const ClassInfo& FrameClass() {
   static const ClassInfo info{"Frame",
                               {
+                                  Query<&FrameWhy>("why"),
                                   Method<&FrameShot>("shot", "options"),
                               },
                               {

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "app/graph/contact_path.h"
-#include "app/job/run_policy.h"
+#include "app/job/run_steps.h"
+#include "app/pictures/reasons.h"
 #include "bindings/lua_session.h"
 #include "bindings/planner_options.h"
 
@@ -21,6 +22,8 @@ struct Cursor {
   const Timeline::Node* node = nullptr;
   /// Of the next command: fields of the planner's configuration by full name.
   nlohmann::json settings = nlohmann::json::object();
+  /// Where it came from when it went back: a step after `node`, or `node`, or on another branch.
+  const Timeline::Node* ahead = nullptr;
 
   std::shared_ptr<const JobState> state() const { return session->timeline().GetState(*node); }
   const std::string& step_id() const { return node->id(); }
@@ -30,6 +33,9 @@ struct Cursor {
   void Do(Verb verb, nlohmann::json options = nlohmann::json::object());
   /// Moves to the node `steps` before this one. @throws InputError beyond `first`.
   void Back(int steps, const Timeline::Node* first);
+  /// Moves to the node `steps` after this one, on the way to where it was before it went back.
+  /// @throws InputError beyond that.
+  void Forward(int steps);
 };
 
 struct LuaGraph : Cursor {
@@ -42,11 +48,22 @@ struct LuaReason {
   NodeReason reason;
 };
 
+/// Any object that has a place in a timeline: what pg.compare and save_state take.
+struct AnyPlace {
+  std::shared_ptr<Session> session;
+  const Timeline::Node* node = nullptr;
+};
+template <>
+struct LuaValue<AnyPlace> {
+  static AnyPlace Read(lua_State* L, int index, const std::string& path);
+};
+
 /// Paths in their order, each found when it is first asked for; the cursor is at the graph.
 struct LuaPaths : Cursor {
   PathOrder order = PathOrder::kExplore;
   int stages = 0;
-  int next = 1;  ///< the rank that next() gives
+  int next = 1;                                     ///< the rank that next() asks for first
+  std::shared_ptr<const FunctionReference> filter;  ///< null: all paths count
 };
 
 struct LuaPath {
@@ -55,10 +72,13 @@ struct LuaPath {
 
   bool recorded() const { return cursor.node->command.verb == Verb::kPath; }
   void Record();
+  /// What a step of it says, whether it is one or not.
+  PathFacts GetFacts() const;
 };
 
 struct LuaOptimizer : Cursor {
   const Timeline::Node* first = nullptr;  ///< paths.rank.P
+  int nominal = 0;  ///< of the next iteration: a rollout, from 1; 0 for the mean
 
   int path_rank() const { return std::get<PathFacts>(first->facts.details).rank; }
   /// Null before the first iteration.
@@ -96,6 +116,14 @@ struct LuaMotion : Cursor {
   void SolveKeyframe();
 };
 
+/// A whole run, taken step by step.
+struct LuaPlan {
+  std::shared_ptr<Session> session;
+  RunConfig config;
+  RunPlace place;  ///< of which `steps` are taken
+  int ahead = 0;   ///< steps that were taken before it went back
+};
+
 /// A step that shows a frame.
 struct LuaFrame {
   std::shared_ptr<Session> session;
@@ -114,6 +142,7 @@ const ClassInfo& GraspsClass();
 const ClassInfo& GraspClass();
 const ClassInfo& MotionClass();
 const ClassInfo& FrameClass();
+const ClassInfo& PlanClass();
 
 template <>
 struct LuaClass<LuaGraph> {
@@ -161,6 +190,11 @@ struct LuaClass<LuaMotion> {
   static const Session* session(const LuaMotion& object) { return object.session.get(); }
 };
 template <>
+struct LuaClass<LuaPlan> {
+  static const ClassInfo& info() { return PlanClass(); }
+  static const Session* session(const LuaPlan& object) { return object.session.get(); }
+};
+template <>
 struct LuaClass<LuaFrame> {
   static const ClassInfo& info() { return FrameClass(); }
   static const Session* session(const LuaFrame& object) { return object.session.get(); }
@@ -176,6 +210,65 @@ Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOpt
 Pushed GraspMotion(lua_State* L, LuaGrasp& grasp, const MotionOptions& options);
 
 void PushNeighbours(lua_State* L, const NeighbourFacts& facts);
+void PushCost(lua_State* L, const CostFacts& cost);
+
+/// A sentence with the numbers that it is made of.
+Pushed PushExplanation(lua_State* L, const Explanation& why);
+
+// What an optimiser's iteration did (lua_rollouts.cc).
+Pushed OptimizerRollouts(lua_State* L, LuaOptimizer& optimizer);
+Pushed OptimizerElite(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& count);
+Pushed OptimizerRollout(lua_State* L, LuaOptimizer& optimizer, int number);
+Pushed OptimizerTrace(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& number,
+                      const std::optional<int>& every);
+Pushed OptimizerWhy(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& number);
+Pushed OptimizerWhyNot(lua_State* L, LuaOptimizer& optimizer, int number,
+                       const std::optional<int>& other);
+Pushed OptimizerNominal(lua_State* L, LuaOptimizer& optimizer);
+Pushed OptimizerPlans(lua_State* L, LuaOptimizer& optimizer);
+Pushed OptimizerSettings(lua_State* L, LuaOptimizer& optimizer);
+double OptimizerSigma(LuaOptimizer& optimizer);
+
+// Going about in time (lua_timeline.cc).
+Pushed SessionGo(lua_State* L, const std::shared_ptr<Session>& session, const std::string& id);
+Pushed SessionStep(lua_State* L, Session& session, const std::string& id);
+std::vector<std::string> SessionIds(Session& session);
+std::string SessionSaveState(lua_State* L, const std::shared_ptr<Session>& session,
+                             const std::string& dir, const std::optional<AnyPlace>& at);
+Pushed SessionWhy(lua_State* L, const std::shared_ptr<Session>& session);
+/// The finished grasps of the certificate that a node follows, as trajectory:grasps{} gives them.
+std::shared_ptr<LuaGrasps> FindGrasps(const std::shared_ptr<Session>& session,
+                                      const Timeline::Node& certified, nlohmann::json options);
+
+// The same in another scene (lua_what_if.cc).
+struct WhatIfOptions {
+  std::vector<Setting> settings;
+};
+template <>
+struct LuaValue<WhatIfOptions> {
+  static WhatIfOptions Read(lua_State* L, int index, const std::string& path);
+};
+Pushed SessionWhatIf(lua_State* L, const std::shared_ptr<Session>& session,
+                     const WhatIfOptions& options);
+Pushed GraphWhatIf(lua_State* L, LuaGraph& graph, const WhatIfOptions& options);
+Pushed SimulationWhatIf(lua_State* L, LuaSimulation& simulation, const WhatIfOptions& options);
+
+/// plan{..} of a session.
+struct PlanOptions {
+  RunConfig config;
+};
+template <>
+struct LuaValue<PlanOptions> {
+  static PlanOptions Read(lua_State* L, int index, const std::string& path);
+};
+Pushed SessionPlan(lua_State* L, const std::shared_ptr<Session>& session,
+                   const PlanOptions& options);
+
+/// set = { ["object.mass"] = 0.2, .. } of `fields`, by name.
+std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields);
+
+/// Functions of the module: compare, load_state.
+const std::vector<FunctionInfo>& TimelineFunctions();
 
 /// Calls ipairs on the list on top.
 Pushed PushIpairs(lua_State* L);
@@ -184,6 +277,11 @@ std::vector<const Schema*> GraphSchemas();
 std::vector<const Schema*> TrajectorySchemas();
 std::vector<const Schema*> GraspStageSchemas();
 std::vector<const Schema*> MotionSchemas();
+std::vector<const Schema*> ReasonSchemas();
+std::vector<const Schema*> RolloutSchemas();
+std::vector<const Schema*> TimelineSchemas();
+std::vector<const Schema*> WhatIfSchemas();
+std::vector<const Schema*> PlanSchemas();
 std::vector<const ClassInfo*> PlannerClasses();
 
 }  // namespace pregrasp

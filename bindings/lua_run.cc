@@ -26,15 +26,6 @@ struct LuaRun {
 
 }  // namespace
 
-template <>
-struct LuaClass<LuaRun> {
-  static const ClassInfo& info() { return RunClass(); }
-  static const Session* session(const LuaRun& /*run*/) { return nullptr; }
-};
-
-namespace {
-
-// Lists and objects as tables, null as nil.
 void PushJson(lua_State* L, const nlohmann::json& value) {
   luaL_checkstack(L, 4, "a document nested too deep");
   if (value.is_object()) {
@@ -61,6 +52,14 @@ void PushJson(lua_State* L, const nlohmann::json& value) {
     lua_pushnil(L);
   }
 }
+
+template <>
+struct LuaClass<LuaRun> {
+  static const ClassInfo& info() { return RunClass(); }
+  static const Session* session(const LuaRun& /*run*/) { return nullptr; }
+};
+
+namespace {
 
 nlohmann::json ReadDocument(const std::filesystem::path& file) {
   return ParseJson(ReadFile(file), file.string());

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <lua5.4/lua.hpp>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "bindings/schema.h"
@@ -9,5 +11,8 @@ namespace pregrasp {
 /// What scripts read finished runs with: pg.load and its class.
 const std::vector<FunctionInfo>& RunFunctions();
 const ClassInfo& RunClass();
+
+/// Pushes a document: lists and objects as tables, null as nil.
+void PushJson(lua_State* L, const nlohmann::json& value);
 
 }  // namespace pregrasp

@@ -7,6 +7,7 @@
 
 #include "app/core/text.h"
 #include "app/geometry/contact_mesh.h"
+#include "app/job/check.h"
 #include "bindings/lua_planner.h"
 #include "bindings/lua_scene.h"
 #include "bindings/machine.h"
@@ -27,6 +28,14 @@ const Schema kShotOptions{"ShotOptions",
 const Schema kBody{"Body", {"name", "movable", "p", "q", "rpy_deg", "v", "w"}};
 const Schema kCloudOptions{"CloudOptions", {"points"}};
 const Schema kMeshOptions{"MeshOptions", {"triangles"}};
+
+const Schema kCheck{"Check", {"text", "clean", "findings"}};
+const Schema kFinding{"Finding", {"severity", "where", "text"}};
+
+const char* SeverityOf(const CheckFinding& finding) {
+  constexpr const char* kNames[] = {"note", "warning", "error"};
+  return kNames[static_cast<int>(finding.severity)];
+}
 
 // Roll, pitch and yaw about the fixed axes, the inverse of RotationFromRpy [deg].
 Vector3 CalcRpyDeg(const Matrix3& R) {
@@ -82,6 +91,30 @@ void PushBody(lua_State* L, const World& world, const WorldState& state, int ind
       .Set("rpy_deg", CalcRpyDeg(X_WB.linear()))
       .Set("v", motion.v_WB)
       .Set("w", motion.w_WB);
+}
+
+Pushed PushCheck(lua_State* L, const Scene& scene) {
+  const std::vector<CheckFinding> findings = CheckScene(scene);
+  std::string text;
+  for (const CheckFinding& finding : findings) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", SeverityOf(finding), finding.message);
+  }
+  const bool clean = std::all_of(findings.begin(), findings.end(), [](const CheckFinding& finding) {
+    return finding.severity == CheckFinding::Severity::kNote;
+  });
+  RecordWriter record(L, kCheck);
+  record.Set("text", text.empty() ? std::string("clean: at rest, no overlaps") : text)
+      .Set("clean", clean);
+  lua_createtable(L, static_cast<int>(findings.size()), 0);
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    RecordWriter(L, kFinding)
+        .Set("severity", SeverityOf(findings[i]))
+        .Set("where", findings[i].where)
+        .Set("text", findings[i].message);
+    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  }
+  record.SetTop("findings");
+  return {1};
 }
 
 int FindBody(const Scene& scene, const std::string& name) {
@@ -224,6 +257,8 @@ Pushed SessionCloud(lua_State* L, Session& session, const CloudOptions& options)
   return PushCloud(L, session, options.points);
 }
 
+Pushed SessionCheck(lua_State* L, Session& session) { return PushCheck(L, session.scene()); }
+
 Pushed SessionMesh(lua_State* L, Session& session, const MeshOptions& options) {
   return PushContactMesh(L, session, options.triangles);
 }
@@ -273,6 +308,13 @@ const ClassInfo& SessionClass() {
                                   Query<&PushDistance>("distance", "point"),
                                   Query<&SessionMesh>("mesh", "options"),
                                   Method<&SessionGraph>("graph", "options"),
+                                  Method<&SessionPlan>("plan", "options"),
+                                  Method<&SessionWhatIf>("what_if", "options"),
+                                  Method<&SessionGo>("go", "id"),
+                                  Query<&SessionStep>("step", "id"),
+                                  Query<&SessionWhy>("why"),
+                                  Query<&SessionCheck>("check"),
+                                  Method<&SessionSaveState>("save_state", "dir, at"),
                               },
                               {
                                   Property<&SessionName>("name"),
@@ -280,6 +322,8 @@ const ClassInfo& SessionClass() {
                                   Property<&SessionSeed>("seed"),
                                   Property<&SessionDt>("dt"),
                                   Property<&SessionStepId>("step_id"),
+                                  Property<&SessionIds>("ids"),
+                                  Property<&SessionStopped>("stopped"),
                                   Property<&SessionBodies>("bodies"),
                                   Property<&SessionObject>("object"),
                                   Property<&SessionDepartures>("departures"),
@@ -289,8 +333,9 @@ const ClassInfo& SessionClass() {
 }
 
 std::vector<const Schema*> SessionSchemas() {
-  return {&kSettleOptions, &kSettleResult, &kVerdict,      &kSimulateOptions, &kRecordOptions,
-          &kShotOptions,   &kBody,         &kCloudOptions, &kMeshOptions};
+  return {&kSettleOptions, &kSettleResult, &kVerdict, &kSimulateOptions,
+          &kRecordOptions, &kShotOptions,  &kBody,    &kCloudOptions,
+          &kMeshOptions,   &kCheck,        &kFinding};
 }
 
 }  // namespace pregrasp

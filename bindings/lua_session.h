@@ -13,6 +13,8 @@ struct LuaSimulation {
   std::shared_ptr<Session> session;
   const Timeline::Node* node = nullptr;
   bool traced = false;
+  const Timeline::Node* ahead =
+      nullptr;  ///< where it was when it first went back; null: it is there
 
   /// As it is at the cursor.
   std::shared_ptr<const Simulation> simulation() const;
@@ -32,9 +34,11 @@ struct LuaClass<LuaSimulation> {
   static const Session* session(const LuaSimulation& object) { return object.session.get(); }
 };
 
-/// A function of the script, by its reference in the registry; LUA_NOREF for none.
+/// What break_when takes: a function of the script, by its reference in the registry (LUA_NOREF for
+/// none), or names of ready-made conditions.
 struct Predicate {
   int reference = LUA_NOREF;
+  std::vector<std::string> conditions;
 };
 template <>
 struct LuaValue<Predicate> {
@@ -46,11 +50,33 @@ struct LuaValue<Predicate> {
 void SessionBreakWhen(lua_State* L, const std::shared_ptr<Session>& session,
                       const Predicate& predicate);
 
-/// Whether the session has such a function.
+/// Whether something is asked of the session's steps.
 bool HasPredicate(lua_State* L, const std::shared_ptr<Session>& session);
 /// The first of the simulation's states, from `first` on, where it says yes; none if it never does.
 std::optional<int> FindStop(lua_State* L, const std::shared_ptr<Session>& session,
                             const Simulation& simulation, int first);
+/// Asks it about a step of the planner that was just done; of a certificate, about its physics
+/// steps first. @returns whether it says yes.
+bool StopsAt(lua_State* L, const std::shared_ptr<Session>& session, const Timeline::Node& node);
+
+/// stopped: what break_when last said yes to; nil.
+Pushed SessionStopped(lua_State* L, const std::shared_ptr<Session>& session);
+
+/// While this lives, the session stands still: methods of its objects that change it are refused.
+class StandStill {
+ public:
+  StandStill(lua_State* L, const Session* session);
+  ~StandStill();
+  StandStill(const StandStill&) = delete;
+  StandStill& operator=(const StandStill&) = delete;
+
+ private:
+  lua_State* L_;
+};
+
+/// Calls the function below the value on top with it, as the script's own code; takes both off.
+/// @returns whether it said yes.
+bool AskFunction(lua_State* L);
 
 /// What shot{..} takes.
 struct ShotOptions {
@@ -78,6 +104,9 @@ void CountMemory(lua_State* L, int kibibytes);
 /// @throws std::bad_alloc beyond the script's cap.
 void CountMemory(lua_State* L, Session& session, int kibibytes);
 
+/// What check says of a scene.
+Pushed PushCheck(lua_State* L, const Scene& scene);
+
 std::vector<const Schema*> SessionSchemas();
 std::vector<const Schema*> EventSchemas();
 std::vector<const Schema*> SimulationSchemas();
@@ -87,6 +116,12 @@ std::vector<const Schema*> GeometrySchemas();
 Pushed PushCloud(lua_State* L, Session& session, int points);
 Pushed PushDistance(lua_State* L, Session& session, const Vector3& p_W);
 void PushMesh(lua_State* L, const TriangleMesh& mesh);
+/// A triangle of a contact mesh.
+struct TriangleShape {
+  Vector3 p_OCentre, nhat_O;  ///< its outward normal
+  double area = 0.0;          ///< [m^2]
+};
+TriangleShape CalcTriangleShape(const TriangleMesh& mesh, int triangle);
 Pushed PushContactMesh(lua_State* L, Session& session, int triangles);
 
 }  // namespace pregrasp

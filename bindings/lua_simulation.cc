@@ -3,7 +3,7 @@
 #include "app/core/interrupt.h"
 #include "app/core/json_values.h"
 #include "app/pictures/forces.h"
-#include "bindings/lua_session.h"
+#include "bindings/lua_planner.h"
 
 namespace pregrasp {
 namespace {
@@ -96,6 +96,7 @@ bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
   const int before = sim.simulation()->num_states();
   const std::size_t nodes = timeline.nodes().size();
   bool stopped = false;
+  sim.ahead = nullptr;
   if (HasPredicate(L, sim.session)) {
     Applied applied = timeline.Try(*sim.node, verb, options);
     const std::optional<int> stop = FindStop(L, sim.session, *applied.state->simulation, before);
@@ -152,34 +153,51 @@ int NumStates(const Timeline& timeline, const Timeline::Node& node) {
   return state->simulation ? state->simulation->num_states() : 1;
 }
 
-// Takes physics steps back, exactly: to the action that ended there, else to one that is stopped
-// there.
-void SimBack(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
+// Goes to the state after `count` physics steps, the start's being 1, of those on the way to
+// `sim.ahead`: to the action that ended there, else to one that is stopped there.
+void GoTo(lua_State* L, LuaSimulation& sim, int count) {
   Timeline& timeline = sim.session->timeline();
-  const int count = NumStates(timeline, *sim.node), back = steps.value_or(1);
-  if (back < 0 || back >= count) {
-    throw InputError("", "steps", fmt::format("0 to {} steps", count - 1), std::to_string(back));
-  }
-  const Timeline::Node* at = sim.node;
+  const Timeline::Node* at = sim.ahead;
   while (at->parent != nullptr && std::holds_alternative<SimulationFacts>(at->facts.details) &&
-         NumStates(timeline, *at->parent) > count - back) {
+         NumStates(timeline, *at->parent) > count) {
     at = at->parent;
   }
-  const int ends = NumStates(timeline, *at);
-  if (ends == count - back) {
+  if (NumStates(timeline, *at) == count) {
     sim.node = at;
     return;
   }
   const int begins = NumStates(timeline, *at->parent);
-  if (begins == count - back) {
+  if (begins == count) {
     sim.node = at->parent;
     return;
   }
   nlohmann::json options = at->command.options;
-  options["stopped_after"] = count - back - begins;
+  options["stopped_after"] = count - begins;
   const std::size_t nodes = timeline.nodes().size();
   sim.node = &timeline.Do(*at->parent, at->command.verb, std::move(options));
   CountSteps(L, sim, nodes, begins);
+}
+
+// Takes physics steps back, exactly.
+void SimBack(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
+  const int count = NumStates(sim.session->timeline(), *sim.node), back = steps.value_or(1);
+  if (back < 0 || back >= count) {
+    throw InputError("", "steps", fmt::format("0 to {} steps", count - 1), std::to_string(back));
+  }
+  if (sim.ahead == nullptr) sim.ahead = sim.node;
+  GoTo(L, sim, count - back);
+}
+
+// Takes steps that it went back.
+void SimForward(lua_State* L, LuaSimulation& sim, const std::optional<int>& steps) {
+  Timeline& timeline = sim.session->timeline();
+  const int count = NumStates(timeline, *sim.node), forward = steps.value_or(1);
+  const int most = sim.ahead == nullptr ? 0 : NumStates(timeline, *sim.ahead) - count;
+  if (forward < 0 || forward > most) {
+    throw InputError("", "steps", fmt::format("0 to {} steps, as it went back", most),
+                     std::to_string(forward));
+  }
+  if (forward > 0) GoTo(L, sim, count + forward);
 }
 
 Pushed SimFork(lua_State* L, LuaSimulation& sim) {
@@ -293,6 +311,8 @@ const ClassInfo& SimulationClass() {
                                   Method<&SimWait>("wait", "options"),
                                   Method<&SimStep>("step", "steps"),
                                   Method<&SimBack>("back", "steps"),
+                                  Method<&SimForward>("forward", "steps"),
+                                  Method<&SimulationWhatIf>("what_if", "options"),
                                   Query<&SimFork>("fork"),
                                   Method<&SimShot>("shot", "options"),
                                   Query<&SimBody>("body", "name"),

@@ -18,7 +18,6 @@ const Schema kCostTerms = MakeCostSchema();
 const Schema kScreening{
     "Screening",
     {"round", "iterations", "rollouts", "value", "rest_reward", "score_scale", "best", "step_id"}};
-const Schema kRollout{"Rollout", {"cost", "weight", "terms", "X_WO"}};
 const Schema kNeighbours{"NeighbourMotion", {"worst", "moved_mm", "turned_deg", "disturbed"}};
 const Schema kRobustness{"Robustness",
                          {"worlds", "held", "worst_shift_mm", "worst_turn_deg", "elsewhere"}};
@@ -41,16 +40,6 @@ namespace {
 
 constexpr int kIterationKib = 100;
 constexpr int kTrajectoryKib = 3000;
-
-void PushCost(lua_State* L, const CostFacts& cost) {
-  RecordWriter record(L, kCostTerms);
-  record.Set("total", cost.total)
-      .Set("stage_scores", cost.stage_scores)
-      .Set("final_score", cost.final_score)
-      .Set("room", cost.room)
-      .Set("reward", cost.reward);
-  for (const CostTermFacts& term : cost.terms) record.Set(term.name.c_str(), term.value);
-}
 
 nlohmann::json PointsJson(const std::vector<Vector3>& points) {
   nlohmann::json list = nlohmann::json::array();
@@ -88,16 +77,72 @@ nlohmann::json ReadPlanStage(lua_State* L, int index, const std::string& path) {
 
 // The optimiser.
 
+// A plan has as many knots as before. @throws InputError for settings that ask for others.
+void RequireSameKnots(const LuaOptimizer& optimizer, const nlohmann::json& settings) {
+  const auto knots = settings.find("mppi.knots");
+  const int now = optimizer.state()->config.mppi.timing.knots;
+  if (knots != settings.end() && optimizer.facts() != nullptr && *knots != now) {
+    throw InputError("", "knots", std::to_string(now) + ", as before", knots->dump());
+  }
+}
+
 bool OptimizerConverged(LuaOptimizer& optimizer) {
   return optimizer.facts() != nullptr && optimizer.facts()->converged;
 }
 
-bool OptimizerStep(lua_State* L, LuaOptimizer& optimizer) {
+// One iteration, unless it has ended. @param stopped  gets whether break_when says yes to it.
+bool Iterate(lua_State* L, LuaOptimizer& optimizer, bool* stopped) {
   const IterationFacts* last = optimizer.facts();
-  if (last != nullptr && !last->end.empty() && optimizer.settings.empty()) return false;
-  optimizer.Do(Verb::kIterate);
+  const bool as_before = optimizer.settings.empty() && optimizer.nominal == 0;
+  if (last != nullptr && !last->end.empty() && as_before) return false;
+  nlohmann::json options = nlohmann::json::object();
+  if (optimizer.nominal > 0) options["nominal"] = optimizer.nominal;
+  optimizer.Do(Verb::kIterate, std::move(options));
+  optimizer.nominal = 0;
   CountMemory(L, kIterationKib);
+  *stopped = StopsAt(L, optimizer.session, *optimizer.node);
   return true;
+}
+
+bool OptimizerStep(lua_State* L, LuaOptimizer& optimizer) {
+  bool stopped = false;
+  return Iterate(L, optimizer, &stopped);
+}
+
+// Iterations until it ends, break_when says yes, or `count` are done.
+bool OptimizerRun(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& count) {
+  if (count && *count < 1) {
+    throw InputError("", "count", "a whole number from 1", std::to_string(*count));
+  }
+  bool stopped = false;
+  int done = 0;
+  while (!stopped && (!count || done < *count) && Iterate(L, optimizer, &stopped)) ++done;
+  return stopped;
+}
+
+// Settings of the next iteration and those after it.
+void OptimizerSet(LuaOptimizer& optimizer, const OptimizeOptions& options) {
+  nlohmann::json settings = optimizer.settings;
+  settings.update(options.ToSettings());
+  RequireSameKnots(optimizer, settings);
+  optimizer.settings = std::move(settings);
+}
+
+// The plan of a rollout takes the mean's place in the next iteration.
+void OptimizerSetNominal(LuaOptimizer& optimizer, int number) {
+  const auto count = optimizer.facts() == nullptr ? 0 : std::ssize(optimizer.facts()->rollouts);
+  if (number < 0 || number > count) {
+    throw InputError(
+        "", "number",
+        fmt::format("a rollout of the last iteration, 1 to {}, or 0 for the mean", count),
+        std::to_string(number));
+  }
+  optimizer.nominal = number;
+}
+
+void OptimizerForward(LuaOptimizer& optimizer, const std::optional<int>& steps) {
+  optimizer.Forward(steps.value_or(1));
+  optimizer.nominal = 0;
 }
 
 Pushed OptimizerScreen(lua_State* L, LuaOptimizer& optimizer, const ScreenOptions& options) {
@@ -120,33 +165,14 @@ Pushed OptimizerScreen(lua_State* L, LuaOptimizer& optimizer, const ScreenOption
 
 void OptimizerBack(LuaOptimizer& optimizer, const std::optional<int>& steps) {
   optimizer.Back(steps.value_or(1), optimizer.first);
+  optimizer.nominal = 0;
 }
 
 Pushed OptimizerFork(lua_State* L, LuaOptimizer& optimizer, const OptimizeOptions& options) {
   auto fork = std::make_shared<LuaOptimizer>(optimizer);
   fork->settings.update(options.ToSettings());
-  const auto knots = fork->settings.find("mppi.knots");
-  const int now = optimizer.state()->config.mppi.timing.knots;
-  if (knots != fork->settings.end() && optimizer.facts() != nullptr && *knots != now) {
-    throw InputError("", "knots", std::to_string(now) + ", as before", knots->dump());
-  }
+  RequireSameKnots(*fork, fork->settings);
   PushObject(L, std::move(fork));
-  return {1};
-}
-
-Pushed OptimizerRollouts(lua_State* L, LuaOptimizer& optimizer) {
-  lua_createtable(L, 0, 0);
-  if (optimizer.facts() == nullptr) return {1};
-  const std::vector<RolloutFacts>& rollouts = optimizer.facts()->rollouts;
-  for (std::size_t i = 0; i < rollouts.size(); ++i) {
-    RecordWriter rollout(L, kRollout);
-    rollout.Set("cost", rollouts[i].cost.total).Set("weight", rollouts[i].weight);
-    PushCost(L, rollouts[i].cost);
-    rollout.SetTop("terms");
-    PushTransform(L, MakeTransform(rollouts[i].q_WO_end, rollouts[i].p_WO_end));
-    rollout.SetTop("X_WO");
-    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-  }
   return {1};
 }
 
@@ -155,6 +181,7 @@ Pushed OptimizerCertify(lua_State* L, LuaOptimizer& optimizer, const CertifyOpti
   auto trajectory = std::make_shared<LuaTrajectory>(
       LuaTrajectory{{optimizer.session, optimizer.node, options.ToSettings()}});
   trajectory->Do(Verb::kCertify, plan ? plan->options : nlohmann::json::object());
+  StopsAt(L, trajectory->session, *trajectory->node);
   PushObject(L, std::move(trajectory));
   CountMemory(L, kTrajectoryKib);
   return {1};
@@ -215,6 +242,11 @@ int OptimizerToString(lua_State* L) {
 }
 
 // The certified trajectory.
+
+Pushed TrajectoryWhy(lua_State* L, LuaTrajectory& trajectory) {
+  return PushExplanation(L, ExplainCertificate(trajectory.session->scene(), trajectory.facts(),
+                                               trajectory.state()->config.certify));
+}
 
 void TrajectoryShot(lua_State* L, LuaTrajectory& trajectory, const ShotOptions& options) {
   TakeShot(L, *trajectory.session, *trajectory.node, options);
@@ -312,6 +344,16 @@ int TrajectoryToString(lua_State* L) {
 
 }  // namespace
 
+void PushCost(lua_State* L, const CostFacts& cost) {
+  RecordWriter record(L, kCostTerms);
+  record.Set("total", cost.total)
+      .Set("stage_scores", cost.stage_scores)
+      .Set("final_score", cost.final_score)
+      .Set("room", cost.room)
+      .Set("reward", cost.reward);
+  for (const CostTermFacts& term : cost.terms) record.Set(term.name.c_str(), term.value);
+}
+
 void PushNeighbours(lua_State* L, const NeighbourFacts& facts) {
   RecordWriter record(L, kNeighbours);
   record.Set("moved_mm", facts.moved_mm)
@@ -332,10 +374,19 @@ const ClassInfo& OptimizerClass() {
   static const ClassInfo info{"Optimizer",
                               {
                                   Method<&OptimizerStep>("step"),
+                                  Method<&OptimizerRun>("run", "count"),
                                   Method<&OptimizerScreen>("screen", "options"),
                                   Method<&OptimizerBack>("back", "steps"),
+                                  Method<&OptimizerForward>("forward", "steps"),
                                   Query<&OptimizerFork>("fork", "options"),
+                                  Method<&OptimizerSet>("set", "options"),
+                                  Method<&OptimizerSetNominal>("set_nominal", "number"),
                                   Query<&OptimizerRollouts>("rollouts"),
+                                  Query<&OptimizerElite>("elite", "count"),
+                                  Query<&OptimizerRollout>("rollout", "number"),
+                                  Query<&OptimizerTrace>("trace", "number, every"),
+                                  Query<&OptimizerWhy>("why", "number"),
+                                  Query<&OptimizerWhyNot>("why_not", "number, other"),
                                   Method<&OptimizerCertify>("certify", "options, plan"),
                                   Method<&OptimizerShot>("shot", "options"),
                               },
@@ -345,6 +396,10 @@ const ClassInfo& OptimizerClass() {
                                   Property<&OptimizerMeanCost>("mean_cost"),
                                   Property<&OptimizerScoreScale>("score_scale"),
                                   Property<&OptimizerBest>("best"),
+                                  Property<&OptimizerNominal>("nominal"),
+                                  Property<&OptimizerPlans>("plans"),
+                                  Property<&OptimizerSigma>("sigma"),
+                                  Property<&OptimizerSettings>("settings"),
                                   Property<&OptimizerConverged>("converged"),
                                   Property<&OptimizerBestHistory>("best_history"),
                                   Property<&OptimizerMeanHistory>("mean_history"),
@@ -359,6 +414,7 @@ const ClassInfo& TrajectoryClass() {
   static const ClassInfo info{"Trajectory",
                               {
                                   Method<&TrajectoryGrasps>("grasps", "options"),
+                                  Query<&TrajectoryWhy>("why"),
                                   Query<&TrajectoryBody>("body", "name"),
                                   Method<&TrajectoryShot>("shot", "options"),
                               },
@@ -395,8 +451,7 @@ const ClassInfo& TrajectoryClass() {
 }
 
 std::vector<const Schema*> TrajectorySchemas() {
-  return {&kCostTerms,  &kScreening, &kRollout,   &kNeighbours,
-          &kRobustness, &kPlanStage, &kPlanFinger};
+  return {&kCostTerms, &kScreening, &kNeighbours, &kRobustness, &kPlanStage, &kPlanFinger};
 }
 
 PlanChoice LuaValue<PlanChoice>::Read(lua_State* L, int index, const std::string& path) {

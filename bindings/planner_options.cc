@@ -11,6 +11,8 @@ namespace {
 struct StageKeys {
   Schema schema;
   std::vector<const PlannerSetting*> settings;  // by key
+  /// What it takes that is no setting, as the manual has it; the key first.
+  std::vector<std::pair<std::string, std::string>> others = {};
 };
 
 // All settings below `roots`, or those of them that are listed.
@@ -60,7 +62,14 @@ const StageKeys& PruneKeys() {
   return keys;
 }
 const StageKeys& PathsKeys() {
-  static const StageKeys keys = MakeKeys("PathsOptions", {"paths"});
+  static const StageKeys keys = [] {
+    StageKeys made = MakeKeys("PathsOptions", {"paths"});
+    made.others = {{"filter",
+                    "---@field filter? fun(path: Path): boolean? says yes to the paths that count; "
+                    "the others keep their ranks and are passed over"}};
+    for (const auto& [key, line] : made.others) made.schema.keys.push_back(key);
+    return made;
+  }();
   return keys;
 }
 const StageKeys& OptimizeKeys() {
@@ -90,6 +99,16 @@ std::vector<const StageKeys*> AllKeys() {
 }
 
 }  // namespace
+
+FunctionReference::FunctionReference(lua_State* L, int index) {
+  lua_pushvalue(L, index);
+  reference_ = luaL_ref(L, LUA_REGISTRYINDEX);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_MAINTHREAD);
+  main_ = lua_tothread(L, -1);
+  lua_pop(L, 1);
+}
+
+FunctionReference::~FunctionReference() { luaL_unref(main_, LUA_REGISTRYINDEX, reference_); }
 
 nlohmann::json StageOptions::ToSettings() const {
   PlannerConfig scratch;
@@ -135,6 +154,7 @@ std::string OptionAnnotations() {
   for (const StageKeys* keys : AllKeys()) {
     text += "\n---@class " + keys->schema.name + '\n';
     for (const PlannerSetting* setting : keys->settings) text += OptionAnnotation(*setting) + '\n';
+    for (const auto& [key, line] : keys->others) text += line + '\n';
   }
   return text;
 }
@@ -146,7 +166,15 @@ PruneOptions LuaValue<PruneOptions>::Read(lua_State* L, int index, const std::st
   return ReadOptions<PruneOptions>(L, index, PruneKeys());
 }
 PathsOptions LuaValue<PathsOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
-  return ReadOptions<PathsOptions>(L, index, PathsKeys());
+  PathsOptions options = ReadOptions<PathsOptions>(L, index, PathsKeys());
+  const Fields fields(L, index, PathsKeys().schema);
+  fields.Push("filter");
+  if (!lua_isnil(L, -1)) {
+    if (!lua_isfunction(L, -1)) fields.Refuse("filter", "a function");
+    options.filter = std::make_shared<const FunctionReference>(L, -1);
+  }
+  lua_pop(L, 1);
+  return options;
 }
 OptimizeOptions LuaValue<OptimizeOptions>::Read(lua_State* L, int index,
                                                 const std::string& /*path*/) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +9,22 @@
 #include "bindings/value.h"
 
 namespace pregrasp {
+
+/// A function of the script, held until this goes.
+class FunctionReference {
+ public:
+  /// Of the function at `index`.
+  FunctionReference(lua_State* L, int index);
+  ~FunctionReference();
+  FunctionReference(const FunctionReference&) = delete;
+  FunctionReference& operator=(const FunctionReference&) = delete;
+
+  void Push(lua_State* L) const { lua_rawgeti(L, LUA_REGISTRYINDEX, reference_); }
+
+ private:
+  lua_State* main_;  // the machine's first thread, which lives as long as it does
+  int reference_;
+};
 
 /// Settings of a planner's stage as a script gives them: a key is the last part of the setting's
 /// name ("samples" of "mppi.samples").
@@ -21,7 +38,9 @@ struct StageOptions {
 
 struct GraphOptions : StageOptions {};
 struct PruneOptions : StageOptions {};
-struct PathsOptions : StageOptions {};
+struct PathsOptions : StageOptions {
+  std::shared_ptr<const FunctionReference> filter;  ///< which paths count; null: all
+};
 struct OptimizeOptions : StageOptions {};
 struct ScreenOptions : StageOptions {};
 struct CertifyOptions : StageOptions {};

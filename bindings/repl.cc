@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <vector>
 
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
@@ -43,13 +44,41 @@ int ShowResults(lua_State* L) {
   });
 }
 
+// print at the prompt: tables and our values as an expression shows them. Upvalue 1: the width.
+int PrintValues(lua_State* L) {
+  return Protect(L, [L] {
+    const int count = lua_gettop(L);
+    const auto width = static_cast<int>(lua_tointeger(L, lua_upvalueindex(1)));
+    std::vector<std::string> texts;
+    bool lines = false;
+    for (int i = 1; i <= count; ++i) {
+      if (lua_istable(L, i) || lua_isuserdata(L, i)) {
+        texts.push_back(ShowValue(L, i, width));
+      } else {
+        PushText(L, i);
+        std::size_t size = 0;
+        const char* text = lua_tolstring(L, -1, &size);
+        texts.emplace_back(text, size);
+        lua_pop(L, 1);
+      }
+      lines = lines || texts.back().find('\n') != std::string::npos;
+    }
+    const std::string text = fmt::format("{}\n", fmt::join(texts, lines ? "\n" : "\t"));
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fflush(stdout);
+    return 0;
+  });
+}
+
 class Repl {
  public:
   explicit Repl(const ScriptConfig& config);
 
   void OpenScene(const std::filesystem::path& scene);
   void ReadAll();
-  void Finish(const std::optional<std::string>& status) { script_.FinishRecordings(status); }
+  void Finish(const std::optional<std::string>& status, const std::string& error = "") {
+    script_.FinishRecordings(status, error);
+  }
 
  private:
   void Greet() const;
@@ -75,6 +104,9 @@ Repl::Repl(const ScriptConfig& config) : script_(config) {
   script_.machine().PushTypedEnvironment(L());
   lua_pushcfunction(L(), PrintHelp);
   lua_setfield(L(), -2, "help");
+  lua_pushinteger(L(), editor_ ? editor_->width() : kPipeWidth);
+  lua_pushcclosure(L(), PrintValues, 1);
+  lua_setfield(L(), -2, "print");
   lua_pop(L(), 1);
   script_.machine().LoadTyped("pg = require 'pregrasp'", 1);
   script_.machine().Call(0, 0);
@@ -200,6 +232,9 @@ void RunRepl(const std::optional<std::filesystem::path>& scene, const ScriptConf
       repl.ReadAll();
     } catch (const Interrupted&) {
       repl.Finish("interrupted");
+      throw;
+    } catch (const InputError& error) {
+      repl.Finish("failed", OneLine(error.what()));
       throw;
     }
     repl.Finish(std::nullopt);

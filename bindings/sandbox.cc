@@ -34,6 +34,20 @@ int LengthOfProxy(lua_State* L) {
   return 1;
 }
 
+// Whether require "pregrasp" has a field of that name, as `box`.
+bool IsInModule(lua_State* L, const std::string& name) {
+  const int top = lua_gettop(L);
+  bool found = false;
+  if (lua_rawgetp(L, LUA_REGISTRYINDEX, &kModules) == LUA_TTABLE &&
+      lua_getfield(L, -1, "pregrasp") == LUA_TTABLE &&
+      luaL_getmetafield(L, -1, "__index") == LUA_TTABLE) {
+    lua_pushlstring(L, name.data(), name.size());
+    found = lua_rawget(L, -2) != LUA_TNIL;
+  }
+  lua_settop(L, top);
+  return found;
+}
+
 // An unknown variable is an error: it is a typing error more often than not.
 int UnknownVariable(lua_State* L) {
   return Protect(L, [L]() -> int {
@@ -49,7 +63,8 @@ int UnknownVariable(lua_State* L) {
       if (lua_type(L, -1) == LUA_TSTRING) known.emplace_back(lua_tostring(L, -1));
     }
     std::sort(known.begin(), known.end());
-    const std::string nearest = FindNearest(name, known);
+    std::string nearest = FindNearest(name, known);
+    if (IsInModule(L, name)) nearest = "pg." + name;
     throw InputError("unknown variable \"" + name + "\"" +
                      (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
   });

@@ -34,6 +34,41 @@ int RefuseNewField(lua_State* L) {
   });
 }
 
+// A record that has a sentence is that as text.
+int RecordToText(lua_State* L) {
+  lua_pushliteral(L, "text");
+  if (lua_rawget(L, 1) != LUA_TSTRING) lua_pushliteral(L, "");
+  return 1;
+}
+
+// #x of an object that has items: its property `count`. Upvalue: properties by name.
+int ObjectLength(lua_State* L) {
+  lua_pushliteral(L, "count");
+  lua_rawget(L, lua_upvalueindex(1));
+  lua_pushvalue(L, 1);
+  lua_call(L, 1, 1);
+  if (lua_Integer whole = 0; lua_numbertointeger(lua_tonumber(L, -1), &whole)) {
+    lua_pushinteger(L, whole);
+  }
+  return 1;
+}
+
+// pairs(x) of an object: its properties as a table, by the script's own pairs. Upvalues: properties
+// by name, the class.
+int ObjectPairs(lua_State* L) {
+  const auto& info = *static_cast<const ClassInfo*>(lua_touserdata(L, lua_upvalueindex(2)));
+  lua_getglobal(L, "pairs");
+  lua_createtable(L, 0, static_cast<int>(info.properties.size()));
+  for (const FunctionInfo& property : info.properties) {
+    lua_getfield(L, lua_upvalueindex(1), property.name.c_str());
+    lua_pushvalue(L, 1);
+    lua_call(L, 1, 1);
+    lua_setfield(L, -2, property.name.c_str());
+  }
+  lua_call(L, 1, 3);
+  return 3;
+}
+
 // Upvalues: methods by name, properties by name, the class.
 int ReadMember(lua_State* L) {
   if (lua_isinteger(L, 2) != 0) {
@@ -152,6 +187,10 @@ void PushRecordTable(lua_State* L, const Schema& schema) {
     lua_setfield(L, -2, "__name");
     lua_pushboolean(L, 0);
     lua_setfield(L, -2, "__metatable");
+    if (schema.Has("text")) {
+      lua_pushcfunction(L, RecordToText);
+      lua_setfield(L, -2, "__tostring");
+    }
     lua_pushvalue(L, -1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &schema);
   }
@@ -174,6 +213,15 @@ void PushClassMetatable(lua_State* L, const ClassInfo& info, lua_CFunction destr
   lua_pop(L, 1);
   MakeClosedMetatable(L);
   lua_createtable(L, 0, 6);
+  if (info.item != nullptr) {
+    PushFunctions(L, info.properties);
+    lua_pushcclosure(L, ObjectLength, 1);
+    lua_setfield(L, -2, "__len");
+  }
+  PushFunctions(L, info.properties);
+  lua_pushlightuserdata(L, Identity(&info));
+  lua_pushcclosure(L, ObjectPairs, 2);
+  lua_setfield(L, -2, "__pairs");
   PushFunctions(L, info.methods);
   PushFunctions(L, info.properties);
   lua_pushlightuserdata(L, Identity(&info));

@@ -32,6 +32,8 @@ struct OpenOptions {
   std::vector<Setting> settings;
 };
 
+}  // namespace
+
 // set = { ["fingertips.friction"] = 0.5, ["object.p"] = {0, 0, 0.1} }
 std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields) {
   std::vector<Setting> settings;
@@ -50,6 +52,8 @@ std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields) {
       value = fmt::format("{},{},{}", v.x(), v.y(), v.z());
     } else if (lua_type(L, -1) == LUA_TSTRING) {
       value = LuaValue<std::string>::Read(L, -1, "set." + key);
+    } else if (lua_type(L, -1) == LUA_TBOOLEAN) {
+      value = lua_toboolean(L, -1) != 0 ? "true" : "false";
     } else {
       value = FormatDouble(LuaValue<double>::Read(L, -1, "set." + key));
     }
@@ -61,8 +65,6 @@ std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields) {
             [](const Setting& a, const Setting& b) { return a.key < b.key; });
   return settings;
 }
-
-}  // namespace
 
 template <>
 struct LuaValue<OpenOptions> {
@@ -126,18 +128,31 @@ std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions
   return session;
 }
 
-const FunctionInfo& OpenFunction() {
-  static const FunctionInfo function = Function<&Open>("open", "scene, options");
-  return function;
+// What there is to say of a scene, be it such that no session of it can be opened.
+Pushed CheckArgument(lua_State* L, SceneArgument& argument) {
+  Machine& machine = Machine::Of(L);
+  std::vector<Setting> none;
+  if (argument.file) {
+    return PushCheck(L, LoadSceneFile(machine.files().FindForReading(*argument.file), none));
+  }
+  FinishScene(argument.scene, machine.script_folder(), none);
+  return PushCheck(L, argument.scene);
+}
+
+const std::vector<FunctionInfo>& SceneFunctions() {
+  static const std::vector<FunctionInfo> functions = {Function<&Open>("open", "scene, options"),
+                                                      Function<&CheckArgument>("check", "scene")};
+  return functions;
 }
 
 Api MakeApi() {
   Api api;
   static Schema module{"pregrasp", {"version", "seed"}};
-  api.functions.push_back(&OpenFunction());
+  for (const FunctionInfo& function : SceneFunctions()) api.functions.push_back(&function);
   for (const FunctionInfo& constructor : SceneConstructors()) api.functions.push_back(&constructor);
   for (const FunctionInfo& function : GraspFunctions()) api.functions.push_back(&function);
   for (const FunctionInfo& function : RunFunctions()) api.functions.push_back(&function);
+  for (const FunctionInfo& function : TimelineFunctions()) api.functions.push_back(&function);
   for (const FunctionInfo* function : api.functions) module.keys.push_back(function->name);
   api.module = &module;
   api.classes = {&SessionClass(), &SimulationClass(), &RunClass()};
@@ -147,7 +162,8 @@ Api MakeApi() {
   for (const auto& schemas :
        {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas(), GraspSchemas(),
         StageOptionSchemas(), GraphSchemas(), TrajectorySchemas(), GraspStageSchemas(),
-        MotionSchemas(), EventSchemas()}) {
+        MotionSchemas(), EventSchemas(), ReasonSchemas(), RolloutSchemas(), TimelineSchemas(),
+        WhatIfSchemas(), PlanSchemas()}) {
     api.schemas.insert(api.schemas.end(), schemas.begin(), schemas.end());
   }
   return api;
@@ -168,7 +184,7 @@ ScriptContext& ScriptContext::Of(lua_State* L) {
 }
 
 ScriptMachine::ScriptMachine(const ScriptConfig& config)
-    : context_{config, {}, {}, {}}, machine_(config.machine) {
+    : context_{config, {}, {}, {}, {}}, machine_(config.machine) {
   machine_.files().AllowProgramFiles(DataFolder());
   machine_.files().SetOutput(config.output);
   lua_State* L = machine_.state();
@@ -186,8 +202,11 @@ ScriptMachine::ScriptMachine(const ScriptConfig& config)
   SetModule(L, "pregrasp");
 }
 
-void ScriptMachine::FinishRecordings(const std::optional<std::string>& status) {
-  for (const auto& session : context_.recording) session->FinishRecording(status);
+void ScriptMachine::FinishRecordings(const std::optional<std::string>& status,
+                                     const std::string& error) {
+  for (const auto& session : context_.recording) {
+    session->FinishRecording(status, nullptr, error);
+  }
 }
 
 void LeaveNothingOnFailure(const ScriptConfig& config, const std::function<void()>& body) {
@@ -196,7 +215,7 @@ void LeaveNothingOnFailure(const ScriptConfig& config, const std::function<void(
   try {
     body();
   } catch (const std::exception&) {
-    // What was recorded is gone with its session; so is the folder that was made for it, if empty.
+    // Where nothing was recorded, the folder that was made for it is gone too.
     if (!had_output) fs::remove(config.output, ignored);
     throw;
   }
@@ -221,6 +240,9 @@ void RunInMachine(const fs::path& file, const std::vector<std::string>& argument
     machine.Call(count, 0);
   } catch (const Interrupted&) {
     script.FinishRecordings("interrupted");
+    throw;
+  } catch (const InputError& error) {
+    script.FinishRecordings("failed", OneLine(error.what()));
     throw;
   }
   script.FinishRecordings(std::nullopt);

@@ -26,7 +26,7 @@ struct ScriptConfig {
 };
 
 /// Runs a Lua script. Recordings that are open at its end are finished; when it was interrupted,
-/// they are finished with status "interrupted"; when it failed, they leave nothing.
+/// they are finished with status "interrupted"; when it failed, with status "failed" and its error.
 /// @throws InputError with one line; Interrupted; InternalError.
 void RunScript(const std::filesystem::path& file, const std::vector<std::string>& arguments,
                const ScriptConfig& config);
@@ -41,7 +41,17 @@ struct ScriptContext {
   struct BreakPoint {
     std::weak_ptr<Session> session;
     int reference = LUA_NOREF;  ///< of the function, in the registry
+    std::vector<std::string> conditions;
   };
+  /// Where break_when last said yes.
+  struct Stop {
+    std::weak_ptr<Session> session;
+    std::string by;  ///< a condition, or "function"
+    std::string step_id, text;
+    double t = 0.0;
+    int num_steps = 0;  ///< physics steps, of a simulation or a certificate
+  };
+  std::map<const Session*, Stop> stops;
   std::map<const Session*, BreakPoint> predicates;
   /// Whose functions are being asked now, innermost last.
   std::vector<const Session*> asking;
@@ -56,8 +66,8 @@ class ScriptMachine {
 
   Machine& machine() { return machine_; }
 
-  /// Ends the recordings that are open. @param status  as Session::FinishRecording.
-  void FinishRecordings(const std::optional<std::string>& status);
+  /// Ends the recordings that are open. @param status, error  as Session::FinishRecording.
+  void FinishRecordings(const std::optional<std::string>& status, const std::string& error = "");
 
  private:
   ScriptContext context_;  // outlives the machine

@@ -209,11 +209,12 @@ void FillObjectMotion(const Timeline& timeline, const JobState& state, RunSummar
   }
 }
 
-// Whether a path or a mean on the way to a node was picked by hand (honesty rule 3).
+// Whether a path, a mean or a plan on the way to a node was picked by hand (honesty rule 3).
 bool IsByHand(const Node& node) {
   for (const Node* at = &node; at != nullptr; at = at->parent) {
     if (at->command.verb == Verb::kPath && at->command.options.contains("nodes")) return true;
     if (at->command.verb == Verb::kIterate && at->command.options.contains("nominal")) return true;
+    if (at->command.verb == Verb::kCertify && at->command.options.contains("stages")) return true;
   }
   return false;
 }

@@ -10,7 +10,20 @@
 
 ---@alias Vector3 number[] {x, y, z}
 ---@alias FingerName "thumb"|"index"|"middle"|"ring"|"little"
----@alias Overlay "forces"|"cones"|"contacts"|"trace"|"ghost"|"fingers"|"axes"|"mesh"|"scores"|"rollouts"|"hand"
+
+---What a picture shows beside the bodies: overlay = {"forces", "cones"} shows these alone.
+---@alias Overlay
+---| "forces" # arrows of the fingers' forces and of the object's weight, with newtons
+---| "cones" # friction cones at the fingers
+---| "contacts" # where the object is supported
+---| "trace" # normals and forces at all contact points
+---| "ghost" # the object at its start, once it has left it
+---| "fingers" # the fingers themselves
+---| "axes" # the world frame's axes at its origin
+---| "mesh" # planning: the contact mesh in place of the object
+---| "scores" # planning: its colours, and the legend
+---| "rollouts" # planning: where plans leave the object
+---| "hand" # planning: the whole hand
 
 ---@class pregrasp
 ---@field version string the program's version
@@ -28,6 +41,60 @@ function pregrasp.open(scene, options) end
 ---@field seed? integer the script's --seed by default
 ---@field threads? integer cannot change a result; 0 is one per processor, at most 256
 ---@field set? table<string, number|string|Vector3> changes values: { ["object.mass"] = 0.2 }
+
+---What there is to say of a scene before anything is planned: overlaps, what does not rest, sizes that look like another
+---unit, departures from the rules. Also of one that open() refuses.
+---@param scene string|Scene|SceneTable
+---@return Check
+function pregrasp.check(scene) end
+
+---@class Check printed, its text
+---@field text string
+---@field clean boolean nothing but notes
+---@field findings Finding[]
+
+---@class Finding
+---@field severity "note"|"warning"|"error"
+---@field where string file and line of the body it is about
+---@field text string
+
+---How two objects and what led to each differ: two forks, two sessions, the same in another scene.
+---@param a Session|Graph|Path|Optimizer|Trajectory|Grasps|Grasp|Motion|Frame|Simulation|Plan
+---@param b Session|Graph|Path|Optimizer|Trajectory|Grasps|Grasp|Motion|Frame|Simulation|Plan
+---@return Comparison
+function pregrasp.compare(a, b) end
+
+---@class Comparison printed, its text
+---@field text string
+---@field verdict "same"|"differ"|"one_goes_on"
+---@field scene Difference? the first thing that differs between two sessions' scenes, shapes left aside
+---@field common string? id of the last step that both have, or that says the same
+---@field a string? id of the first step that differs; nil where that branch has ended
+---@field b string?
+---@field command Difference? what was asked for there: an option, or a setting by its full name
+---@field first Difference? the first thing that came of it and differs
+---@field same_noise boolean? both iterations draw the same noise: the same seed, path and iteration
+---@field settings Difference[] that differ at the two ends, by full name
+---@field scores ScoreChange[]? of two sessions' graphs of as many nodes: the ten nodes whose s_c differs most
+
+---@class Difference
+---@field field string
+---@field a string as the log has it
+---@field b string
+
+---@class ScoreChange
+---@field id integer
+---@field thumb integer triangle
+---@field index integer triangle
+---@field a number s_c of the one
+---@field b number and of the other
+---@field change number b - a
+
+---Goes on from a finished run, of save_state, save or `pregrasp run`: all its steps are there under their ids. Nothing is
+---computed before a step is acted on, or asked for more than the log has; that is then held against the log.
+---@param dir string
+---@return Session # and the object at the step where it stood
+function pregrasp.load_state(dir) end
 
 ---A finished run, read back. What its files say is given as it is there; whether it is true is for `pregrasp verify` to say.
 ---@param dir string a run directory
@@ -157,6 +224,8 @@ function pregrasp.union(parts) end
 ---@field bodies string[] names, the object's first
 ---@field object Body where the object starts
 ---@field departures string[] from the project's physical rules, a sentence each; empty is within them
+---@field ids string[] of all steps, in the order of doing
+---@field stopped Stop? where break_when last said yes
 local Session = {}
 
 ---Whether the object can be grasped where it stands, by faces, edges or corners: by proof, else by generated grasps
@@ -171,6 +240,10 @@ function Session:verdict() end
 ---@field thin boolean mu* lies within 0.05 of mu
 ---@field sentence string
 ---@field step_id string
+
+---What pregrasp.check says of its scene.
+---@return Check
+function Session:check() end
 
 ---Lets the scene alone; from then on it starts where that ended.
 ---@param options? SettleOptions
@@ -205,17 +278,28 @@ function Session:record(options) end
 ---@field dir string "out/..", which is the folder of --out
 ---@field pictures? "none"|"key"|"all" "key"
 
----From now on the function sees the events of every physics step of the session's simulations: it is asked after
----each action, in the order of its steps, and where it first says yes, the action ended there. nil takes it back.
----@param predicate? fun(event: Event): boolean?
+---From now on the function sees the events of every physics step of the session's simulations and certificates, and of every
+---step of the planner: it is asked after each action, in the order of its steps. Where it first says yes, a simulation's
+---action ended there, and what takes several steps (run, next_stage) stops there; `stopped` says where. In place of a
+---function, names of conditions, any of which will do: "contact_made", "contact_lost", "slip" (a fingertip that stuck),
+---"penetration" (over 0.1 mm); "new_best", "score_drop" (of the best plan's end), "path_switched", "search_ended",
+---"certified", "certify_failed", "ik_failed", "grasp_found", "lifted", "lift_failed", "loosened". nil takes it back.
+---@param predicate? (fun(event: Event): boolean?)|string|string[]
 function Session:break_when(predicate) end
+
+---@class Stop
+---@field by string the condition that held, or "function"
+---@field step_id string of the planner's step; "" of a simulation's physics step
+---@field t number [s]
+---@field num_steps integer physics steps, of a simulation or a certificate
+---@field text string what was so; "" for a function
 
 ---What happened in one physics step: a "step" each, a "contact" for each contact point, a "finger" for each finger
 ---that is on. Fields of the other kinds are nil.
 ---@class Event
----@field kind "step"|"contact"|"finger"
+---@field kind string "step", "contact" or "finger"; of a planner's step its verb: "score", "prune", "path", "screen", "iterate", "certify", "grasp", "lift", "keyframe", ..
 ---@field t number after the step [s]
----@field num_steps integer since the simulation's start
+---@field num_steps integer? since the simulation's start
 ---@field speed number? step: of the object [m/s]
 ---@field a string? contact: a body's name
 ---@field b string? contact: the other's
@@ -227,6 +311,10 @@ function Session:break_when(predicate) end
 ---@field touching boolean? finger
 ---@field slipping boolean? finger
 ---@field slip_mm number? finger: since it was put on
+---@field step_id string? of a planner's step
+---@field path integer? that it belongs to, by rank
+---@field cost number? iterate: the best one so far
+---@field text string? what happened, as its picture says
 
 ---A picture of the last step. It belongs to the run directory, unless it names a file.
 ---@param options? ShotOptions
@@ -244,6 +332,107 @@ function Session:shot(options) end
 ---@param dir? string "out/.."
 ---@return string where
 function Session:save(dir) end
+
+---Writes a run directory with all steps so far, without pictures, that load_state goes on from in any process. Recording goes on.
+---@param dir string "out/.."
+---@param at? Graph|Path|Optimizer|Trajectory|Grasps|Grasp|Motion|Frame|Simulation|Plan where it stands; at the last step without
+---@return string where
+function Session:save_state(dir, at) end
+
+---The object that goes on from a step: a Graph, Path, Optimizer, Trajectory, Grasp, Motion, Frame or Simulation; of the
+---start the session itself.
+---@param id string "path.1.mppi.3"
+---@return Session|Graph|Path|Optimizer|Trajectory|Grasp|Motion|Frame|Simulation
+function Session:go(id) end
+
+---A step as the log has it: fields by the names in app/recording/README.md.
+---@param id string
+---@return table
+function Session:step(id) end
+
+---How far it came, and what the step that came furthest says.
+---@return Explanation
+function Session:why() end
+
+---The same scene with some values changed, as a session of its own at its start; this one is left as it is.
+---@param options WhatIfOptions
+---@return Session
+function Session:what_if(options) end
+
+---@class WhatIfOptions
+---@field set table<string, number|string|boolean|Vector3> { ["object.p"] = {..}, ["environment.table.p"] = {..}, ["mppi.sigma"] = 0.5 }; as --set
+
+---The whole run, as `pregrasp run` does it, to be taken step by step.
+---@param options? RunOptions
+---@return Plan
+function Session:plan(options) end
+
+---@class RunOptions
+---@field paths? integer to optimise at most; 10
+---@field all? boolean goes on after the first success; false
+---@field plans? integer of a path that are certified at most; 4
+---@field motions? integer hand motions tried of a path; 6
+---@field set? table<string, number|string|boolean> settings of the planner by full name, from the graph on
+
+---A whole run. Each step is one of the log's; any number of them can be taken back and again.
+---@class Plan
+---@field num_steps integer taken
+---@field step_id string of the last one; "" before the first
+---@field stage string what it is at
+---@field finished boolean
+---@field status string? nil before its end; as in summary.json
+---@field end_id string? the step that the result is of
+---@field reasons string[] at its end, a sentence for each path that was tried
+local Plan = {}
+
+---Takes steps.
+---@param steps? integer 1
+---@return boolean # false when it has ended
+function Plan:step(steps) end
+
+---Takes steps to the end, to a step, or to where break_when says yes.
+---@param to? string the id of a step
+---@return boolean # true when break_when stopped it
+function Plan:run(to) end
+
+---Takes steps until one belongs to another stage of the pipeline: graph, trajectory, grasp, motion.
+---@return boolean # true when break_when stopped it
+function Plan:next_stage() end
+
+---Takes steps back.
+---@param steps? integer 1
+function Plan:back(steps) end
+
+---Takes steps again that were taken back.
+---@param steps? integer 1
+function Plan:forward(steps) end
+
+---What its last step gave, as Session:go: to look at, or to go another way from.
+---@return Session|Graph|Path|Optimizer|Trajectory|Grasp|Motion|Frame
+function Plan:object() end
+
+---Why it ended as it did, or where it is.
+---@return Explanation
+function Plan:why() end
+
+---As Session:save, with the summary of the run's result.
+---@param dir? string "out/.."
+---@return string where
+function Plan:save(dir) end
+
+---Why something came out as it did, from the decision's own numbers. Printed, its text.
+---@class Explanation
+---@field text string a sentence
+---@field verdict string a word
+---@field items ExplanationItem[] the numbers
+
+---@class ExplanationItem
+---@field name string
+---@field value number?
+---@field other number? what it is compared with: the text says what that is
+---@field limit number? that it had to keep
+---@field unit string
+---@field met boolean? whether it did
 
 ---A body at the start.
 ---@param name string
@@ -294,6 +483,10 @@ function Session:mesh(options) end
 ---@field num_triangles integer
 ---@field vertices Vector3[] [m]
 ---@field triangles integer[][] three vertices each, from 1, counter-clockwise from outside
+---@field normals Vector3[] of the triangles, outward
+---@field areas number[] [m^2]
+---@field centres Vector3[] [m]
+---@field neighbors integer[][] triangles that share an edge, from 1
 
 ---The contact graph, meshed: the first of the planner's stages. Its settings hold for the later ones.
 ---@param options? GraphOptions
@@ -329,19 +522,44 @@ function Graph:prune(options) end
 function Graph:prune_step(nodes) end
 
 ---Why a node is there: a sentence when printed, and the numbers that decided.
----@param id integer
+---@param id integer|NodeKey
 ---@return Reason
 function Graph:why(id) end
 
 ---The same, for a node that is not there.
----@param id integer
+---@param id integer|NodeKey
 ---@return Reason
 function Graph:why_not(id) end
 
----One node.
----@param id integer
+---One node: node(17), or node{ thumb = 0, index = 17 }.
+---@param id integer|NodeKey
 ---@return ContactState
 function Graph:node(id) end
+
+---@class NodeKey a node by its triangles
+---@field thumb integer
+---@field index integer
+
+---Which triangles a finger prefers: those with the best node first.
+---@param options? TrianglesOptions
+---@return TriangleScore[]
+function Graph:triangles(options) end
+
+---@class TrianglesOptions
+---@field finger? "thumb"|"index" "thumb"
+---@field count? integer 10
+
+---@class TriangleScore
+---@field triangle integer
+---@field finger FingerName
+---@field best number the highest s_c of a node with the finger there
+---@field mean number of all such nodes
+---@field node integer the id of the best one
+---@field kept integer how many such nodes the graph keeps
+---@field fits boolean the fingertip can be somewhere on it at the start
+---@field p_OCentre Vector3
+---@field nhat_O Vector3 outward normal
+---@field area number [m^2]
 
 ---The best nodes by s_c.
 ---@param count? integer 10
@@ -357,6 +575,20 @@ function Graph:neighbors(id) end
 ---@param options? PathsOptions
 ---@return Paths
 function Graph:paths(options) end
+
+---A path put together by hand from nodes, kept or not; it is a step "paths.hand", and no run that takes it is within the rules.
+---@param nodes (integer|NodeKey)[]
+---@return Path
+function Graph:path(nodes) end
+
+---The same graph, as far as it is, in another scene, as pregrasp.compare takes it; this one is left as it is.
+---@param options WhatIfOptions
+---@return Graph
+function Graph:what_if(options) end
+
+---Takes steps again that back() took back.
+---@param steps? integer 1
+function Graph:forward(steps) end
 
 ---Takes steps back.
 ---@param steps? integer 1
@@ -412,8 +644,13 @@ function Paths:next() end
 ---@return Path[]
 function Paths:top(count) end
 
+---Why a path has its rank, and which it beat.
+---@param rank integer
+---@return Explanation
+function Paths:why(rank) end
+
 ---@class Path
----@field rank integer 1 is the best
+---@field rank integer 1 is the best; 0 of one that was put together by hand
 ---@field score number s_c of the first node and s_n of the others
 ---@field value number what the order goes by: in "explore" the first node's s_c as a share of the best, over 1 + repeats; in "paper" the score
 ---@field repeats number how often paths before it had what it has: each finger's triangle, half each finger's side; 0 in "paper"
@@ -427,6 +664,15 @@ local Path = {}
 ---@param options? OptimizeOptions
 ---@return Optimizer
 function Path:optimize(options) end
+
+---Why it has its rank, and which it beat.
+---@return Explanation
+function Path:why() end
+
+---Why it is not before another.
+---@param other Path
+---@return Explanation
+function Path:why_not(other) end
 
 ---A picture of the path on the contact mesh.
 ---@param options? ShotOptions
@@ -443,6 +689,10 @@ function Path:shot(options) end
 ---@field mean_cost number? of the last iteration's rollouts
 ---@field score_scale number? how far the first iteration's scores are apart: what tie-breaking terms are weighed by
 ---@field best CostTerms of the best plan so far
+---@field nominal RolloutStage[]? the mean that the next iteration's noise is about, as a plan; nil before the first
+---@field plans PlanChoice[] those kept because their ends differ, the best first: what certify(options, plan) numbers
+---@field sigma number of the next iteration's noise
+---@field settings table<string, number|string|boolean> of the next iteration, as OptimizeOptions
 ---@field converged boolean it ended for want of progress, not at the limit of iterations
 ---@field best_history number[] best_cost after each iteration
 ---@field mean_history number[]
@@ -453,6 +703,19 @@ local Optimizer = {}
 ---One iteration.
 ---@return boolean # false, and nothing done, when it has ended
 function Optimizer:step() end
+
+---Iterations until it ends, break_when says yes, or so many are done.
+---@param count? integer
+---@return boolean # true when break_when stopped it
+function Optimizer:run(count) end
+
+---Changes settings from the next iteration on: o:set{ sigma = 0.3 }.
+---@param options OptimizeOptions
+function Optimizer:set(options) end
+
+---The plan of a rollout of the last iteration takes the mean's place in the next one; 0 takes that back.
+---@param number integer
+function Optimizer:set_nominal(number) end
 
 ---A few iterations that tell what the path is worth, before the first step(), which goes on from
 ---what they found.
@@ -474,6 +737,10 @@ function Optimizer:screen(options) end
 ---@param steps? integer 1
 function Optimizer:back(steps) end
 
+---Takes iterations again that back() took back.
+---@param steps? integer 1
+function Optimizer:forward(steps) end
+
 ---A copy with the same past that goes on with other settings.
 ---@param options? OptimizeOptions
 ---@return Optimizer
@@ -482,6 +749,33 @@ function Optimizer:fork(options) end
 ---The plans of the last iteration. Where there was a best plan before it, the first is the mean, the second that plan.
 ---@return Rollout[]
 function Optimizer:rollouts() end
+
+---The rollouts that weigh most in the new mean.
+---@param count? integer 5
+---@return Rollout[]
+function Optimizer:elite(count) end
+
+---A rollout of the last iteration with its plan: what each finger does in each stage.
+---@param number integer
+---@return Rollout
+function Optimizer:rollout(number) end
+
+---The whole trajectory of a rollout of the last iteration, simulated again; of the best plan so far without a number.
+---@param number? integer
+---@param every? integer physics steps from one row to the next; 10
+---@return TraceRow[]
+function Optimizer:trace(number, every) end
+
+---What made a rollout cost what it does: its terms beside the mean of all; of the cheapest one without a number.
+---@param number? integer
+---@return Explanation
+function Optimizer:why(number) end
+
+---Why a rollout is not another: the cheapest one without a second number.
+---@param number integer
+---@param other? integer
+---@return Explanation
+function Optimizer:why_not(number, other) end
 
 ---A plan simulated through the full Simbody model, and again at half the time step: one of those kept because their
 ---ends differ, 1 the best; or one made by hand, a list of stages: { { index = { p_OC = {..}, p_WTargets = { {..} } } }, .. }.
@@ -515,10 +809,49 @@ function Optimizer:shot(options) end
 ---@field fall number
 
 ---@class Rollout
+---@field number integer
 ---@field cost number
 ---@field weight number in the new mean
 ---@field terms CostTerms
 ---@field X_WO Transform where the object ends
+---@field stages RolloutStage[]? of rollout(number) alone
+
+---@class RolloutStage
+---@field thumb RolloutFinger
+---@field index RolloutFinger
+
+---@class RolloutFinger
+---@field on boolean
+---@field kept boolean it was on in the stage before, and keeps its contact
+---@field triangle integer that it may touch
+---@field p_OC Vector3? contact point in the object's frame; nil unless it is put on here
+---@field nhat_O Vector3? outward normal there
+---@field knots RolloutKnot[]
+
+---@class RolloutKnot how far a finger's spring is deflected at the end of a knot
+---@field depth number along the inward normal [m]
+---@field tangent number[] along the contact's tangents [m]
+---@field travel_W Vector3 further, in the world [m]
+
+---@class PlanChoice
+---@field number integer
+---@field cost number
+---@field terms CostTerms
+---@field X_WO Transform where the object ends
+---@field stages RolloutStage[]
+
+---@class TraceRow
+---@field t number [s]
+---@field X_WO Transform of the object
+---@field fingers TraceFinger[] those that are on
+
+---@class TraceFinger
+---@field finger FingerName
+---@field touching boolean
+---@field slipping boolean
+---@field p_WF Vector3 the fingertip point
+---@field p_WTarget Vector3 where its spring pulls
+---@field f_W Vector3 force on the object [N]
 
 ---@class NeighbourMotion how far movable bodies other than the object are from where the scene has them
 ---@field worst? string the one that moved most, 30 degrees counting as much as 5 cm; nil if there are none
@@ -568,6 +901,10 @@ local Trajectory = {}
 ---@return Grasps
 function Trajectory:grasps(options) end
 
+---Why it is certified or not: its numbers beside the bounds.
+---@return Explanation
+function Trajectory:why() end
+
 ---A body at its end.
 ---@param name string
 ---@return Body
@@ -612,6 +949,10 @@ function Grasps:all() end
 ---@return Grasp?
 function Grasps:best() end
 
+---How many failed, and why.
+---@return Explanation
+function Grasps:why() end
+
 ---@class Grasp
 ---@field feasible boolean
 ---@field reason string "feasible", or the first demand that is not met
@@ -633,6 +974,10 @@ local Grasp = {}
 ---@param options? MotionOptions
 ---@return Motion
 function Grasp:motion(options) end
+
+---What stands in the way of it, or what its lift withstands.
+---@return Explanation
+function Grasp:why() end
 
 ---A picture of the hand in it.
 ---@param options? ShotOptions
@@ -685,6 +1030,14 @@ function Motion:finish() end
 ---@param steps? integer 1
 function Motion:back(steps) end
 
+---Takes again what back() took back.
+---@param steps? integer 1
+function Motion:forward(steps) end
+
+---What the last keyframe gave up, or what the finished motion came to.
+---@return Explanation
+function Motion:why() end
+
 ---A picture of the last step.
 ---@param options? ShotOptions
 function Motion:shot(options) end
@@ -717,6 +1070,10 @@ function Motion:shot(options) end
 ---@field touching FingerName[]
 ---@field step_id string
 local Frame = {}
+
+---What it gave up, beside what was demanded.
+---@return Explanation
+function Frame:why() end
 
 ---A picture of it.
 ---@param options? ShotOptions
@@ -777,6 +1134,15 @@ function Simulation:step(steps) end
 ---Takes physics steps back, exactly.
 ---@param steps? integer 1
 function Simulation:back(steps) end
+
+---Takes physics steps again that back() took back.
+---@param steps? integer 1
+function Simulation:forward(steps) end
+
+---The same actions in another scene, as a simulation of a session of its own.
+---@param options WhatIfOptions
+---@return Simulation
+function Simulation:what_if(options) end
 
 ---A copy with the same past, which goes its own way from here.
 ---@return Simulation

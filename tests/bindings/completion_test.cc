@@ -77,7 +77,7 @@ TEST_F(PromptTest, CompletesVariablesFieldsAndMethods) {
   EXPECT_EQ(Complete("pg.wr"), "wr> wrench");
   EXPECT_EQ(Complete("math.ma"), "ma> max maxinteger");
   EXPECT_EQ(Complete("for i = 1, 2 do retu"), "retu> return");
-  EXPECT_EQ(Complete("sim:"), "> back body fork lift move shot step touch wait");
+  EXPECT_EQ(Complete("sim:"), "> back body fork forward lift move shot step touch wait what_if");
 }
 
 TEST_F(PromptTest, CompletesTheOptionsOfACall) {

@@ -48,13 +48,18 @@ TEST(ReplPipeTest, TheFirstErrorIsOneLineWithItsLineAndEndsIt) {
       {"1\nfor i = 1, 2 do\n", "stdin:2: the input ends within a statement\n"},
       {"1\nos.execute('touch x')\n", "stdin:2: unknown variable \"os\" (did you mean \"s\"?)\n"},
       {"1\ns:record{ dir = 'out/x' } s:simulate():wait()\nerror('late')\n", "stdin:3: late\n"},
+      {"1\nlocal shape = box{1, 1, 1}\n",
+       "stdin:2: unknown variable \"box\" (did you mean \"pg.box\"?)\n"},
   };
   for (const auto& [text, expected] : cases) {
     const ProgramResult result = Pipe(text, folder);
     EXPECT_EQ(result.code, 2);
     EXPECT_EQ(result.out, "1\n");
     EXPECT_EQ(result.err, expected);
-    EXPECT_EQ(ListFiles(folder.path()).size(), 0U);
+    const bool recorded = text.find("record") != std::string::npos;
+    EXPECT_EQ(ListFiles(folder.path()).empty(), !recorded) << text;
+    if (recorded) EXPECT_EQ(LoadRun(folder.path() / "out/x").summary.status, "failed");
+    std::filesystem::remove_all(folder.path() / "out");
   }
   const ProgramResult missing = Pipe("1\n", folder, {"missing.lua"});
   EXPECT_EQ(missing.code, 2);
@@ -97,7 +102,7 @@ TEST_F(ReplTerminalTest, CompletesAndRemembersOverSessions) {
     terminal.Type("#s.bod\t\n");
     ASSERT_TRUE(terminal.Await("\n2\r\n> ")) << terminal.rest();
     terminal.Type("s:s\t");
-    ASSERT_TRUE(terminal.Await("save      settle    shot      simulate\r\n")) << terminal.rest();
+    ASSERT_TRUE(terminal.Await("save        save_state  settle      shot        simulate    step\r\n")) << terminal.rest();
     terminal.Type("\x15\x04");  // take back, end
     EXPECT_EQ(terminal.AwaitEnd(), 0);
   }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/recording/loaded_run.h"
+#include "app/recording/manifest.h"
 #include "tests/bindings/lua_text.h"
 #include "tests/bindings/run_program.h"
 
@@ -75,18 +76,27 @@ TEST(ScriptTest, GetsItsArgumentsAndItsSeed) {
   EXPECT_EQ(result.out, "2\tone\ttwo words\t7\n") << result.err;
 }
 
-TEST(ScriptTest, AFailureIsOneLineAndLeavesNothing) {
+TEST(ScriptTest, AFailureIsOneLineAndLeavesWhatWasRecordedWithIt) {
   const TestFolder folder;
   folder.Write("fails.lua", R"(local s = require "pregrasp".open "scenes/ruler.lua"
     s:record { dir = "out/run" }
     s:simulate():wait { seconds = 0.1 }
     s:simulate():touch { finger = "toe" })");
-  const auto before = ListFiles(folder.path());
   const ProgramResult result = RunProgram({"script", "fails.lua"}, folder.path());
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(result.err,
             "fails.lua:4: touch: finger: expected a finger (thumb, index, middle, ring or little), "
             "got \"toe\"\n");
+  const LoadedRun run = LoadRun(folder.path() / "out/run");
+  EXPECT_EQ(run.summary.status, "failed");
+  EXPECT_EQ(run.manifest["error"].get<std::string>() + "\n", result.err);
+  EXPECT_EQ(run.steps.back().id, "sim.1");
+  EXPECT_FALSE(VerifyManifest(folder.path() / "out/run").has_value());
+  EXPECT_EQ(RunProgram({"verify", "out/run"}, folder.path()).code, 0);
+
+  folder.Write("early.lua", "error 'at once'");
+  const auto before = ListFiles(folder.path());
+  EXPECT_EQ(RunProgram({"script", "early.lua", "--out", "other"}, folder.path()).code, 2);
   EXPECT_EQ(ListFiles(folder.path()), before);
 }
 
