@@ -1,5 +1,6 @@
 #include "bindings/help.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <vector>
 
@@ -17,6 +18,7 @@ const char* const kPromptHelp =
     R"(An expression shows its value; anything else is run. A local is kept for the next lines.
   pg                  require "pregrasp", the whole interface:  help(pg)
   s = pg.open "scenes/ruler.lua"                    help(s), help(s.settle), help "shot"
+  help "sigma"        an option, a setting, an overlay, or whatever mentions the words
   Tab                 completes variables, fields, methods and options
   Ctrl-C              stops what runs; what it has done so far stays
   Ctrl-D              ends
@@ -49,6 +51,15 @@ std::string ExplainWord(const std::string& word) {
   for (const std::string& name : manual.Match(word)) {
     if (!text.empty()) text += '\n';
     text += manual.Explain(name);
+  }
+  if (!text.empty()) return text;
+  constexpr std::size_t kMostFound = 30;
+  const std::vector<std::string> found = manual.Search(word);
+  for (std::size_t i = 0; i < std::min(found.size(), kMostFound); ++i) {
+    text += manual.Summarize(found[i]) + '\n';
+  }
+  if (found.size() > kMostFound) {
+    text += ".. and " + std::to_string(found.size() - kMostFound) + " more\n";
   }
   if (!text.empty()) return text;
   std::vector<std::string> names;

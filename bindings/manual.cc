@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -40,6 +41,12 @@ ManualEntry::Part TakePart(std::string text) {
   part.type = TakeWord(text);
   part.text = text;
   return part;
+}
+
+std::string ToLower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
 }
 
 bool StartsWith(const std::string& text, const std::string& start) {
@@ -102,6 +109,16 @@ Manual::Manual(const std::string& text) {
       entry.parts.push_back(TakePart(line.substr(10)));
     } else if (StartsWith(line, "---@return ")) {
       entry.result = line.substr(11);
+    } else if (StartsWith(line, "---@alias ")) {
+      std::string rest = line.substr(10);
+      const std::string name = TakeWord(rest);
+      if (!rest.empty()) continue;  // on one line: a name for a type
+      entry.name = name;
+    } else if (StartsWith(line, "---| ")) {
+      std::string rest = line.substr(5);
+      std::string word = TakeWord(rest);
+      word.erase(std::remove(word.begin(), word.end(), '"'), word.end());
+      entry.parts.push_back({word, "", rest.substr(std::min<std::size_t>(rest.size(), 2)), false});
     } else if (StartsWith(line, "---@")) {
       continue;
     } else if (StartsWith(line, "---")) {
@@ -141,7 +158,7 @@ const ManualEntry* Manual::OptionsOf(const ManualEntry& function) const {
 
 std::string Manual::Explain(const std::string& name) const {
   const ManualEntry* entry = Find(name);
-  if (entry == nullptr) return "";
+  if (entry == nullptr) return FindPart(name) == nullptr ? "" : Summarize(name) + '\n';
   std::string text = entry->is_function() ? entry->signature : entry->name;
   if (!entry->result.empty()) text += " -> " + entry->result;
   text += '\n';
@@ -164,13 +181,65 @@ std::string Manual::Explain(const std::string& name) const {
   return text;
 }
 
+const ManualEntry::Part* Manual::FindPart(const std::string& name) const {
+  const std::size_t dot = name.find('.');
+  const ManualEntry* entry = dot == std::string::npos ? nullptr : Find(name.substr(0, dot));
+  if (entry == nullptr || entry->is_function()) return nullptr;
+  for (const auto& part : entry->parts) {
+    if (part.name == name.substr(dot + 1)) return &part;
+  }
+  return nullptr;
+}
+
+std::string Manual::Summarize(const std::string& name) const {
+  if (const auto* part = FindPart(name)) {
+    return fmt::format("{}{}{}  {}", name, part->type.empty() ? "" : "  ", part->type, part->text);
+  }
+  const ManualEntry* entry = Find(name);
+  if (entry == nullptr) return name;
+  return fmt::format("{}  {}", entry->is_function() ? entry->signature : name,
+                     entry->text.substr(0, entry->text.find('\n')));
+}
+
 std::vector<std::string> Manual::Match(const std::string& word) const {
-  if (Find(word) != nullptr) return {word};
+  if (Find(word) != nullptr || FindPart(word) != nullptr) return {word};
+  const std::string lower = ToLower(word);
   std::vector<std::string> names;
   for (const std::string& name : order_) {
     const std::size_t separator = name.find_first_of(".:");
-    if (separator != std::string::npos && name.substr(separator + 1) == word) {
-      names.push_back(name);
+    const bool member =
+        separator != std::string::npos && ToLower(name.substr(separator + 1)) == lower;
+    if (member || ToLower(name) == lower) names.push_back(name);
+  }
+  for (const std::string& name : order_) {
+    const ManualEntry& entry = entries_.at(name);
+    if (entry.is_function()) continue;
+    for (const auto& part : entry.parts) {
+      const std::string full = name + '.' + part.name;
+      if (ToLower(part.name) == lower && Find(full) == nullptr) names.push_back(full);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> Manual::Search(const std::string& text) const {
+  std::vector<std::string> words;
+  std::istringstream in(ToLower(text));
+  for (std::string word; in >> word;) words.push_back(word);
+  const auto mentions = [&](const std::string& where) {
+    const std::string lower = ToLower(where);
+    return !words.empty() && std::all_of(words.begin(), words.end(), [&](const std::string& word) {
+      return lower.find(word) != std::string::npos;
+    });
+  };
+  std::vector<std::string> names;
+  for (const std::string& name : order_) {
+    const ManualEntry& entry = entries_.at(name);
+    if (mentions(name + ' ' + entry.text)) names.push_back(name);
+    if (entry.is_function()) continue;
+    for (const auto& part : entry.parts) {
+      const std::string full = name + '.' + part.name;
+      if (Find(full) == nullptr && mentions(full + ' ' + part.text)) names.push_back(full);
     }
   }
   return names;

@@ -43,10 +43,20 @@ class Manual {
   /// options. Empty if there is no such name.
   std::string Explain(const std::string& name) const;
 
-  /// Full names that `word` may mean: itself, or members called so.
+  /// Full names that `word` may mean, whatever its capitals: itself, members called so, fields and
+  /// options ("OptimizeOptions.sigma"), words that an argument may be ("Overlay.ghost").
   std::vector<std::string> Match(const std::string& word) const;
 
+  /// Full names of what mentions all words of `text`, in the file's order.
+  std::vector<std::string> Search(const std::string& text) const;
+
+  /// One line on a name: `OptimizeOptions.sigma  number  standard deviation ..`.
+  std::string Summarize(const std::string& name) const;
+
  private:
+  // The field or option "Class.name"; null if there is none, with its class.
+  const ManualEntry::Part* FindPart(const std::string& name) const;
+
   std::map<std::string, ManualEntry> entries_;
   std::vector<std::string> order_;
 };
