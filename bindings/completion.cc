@@ -28,6 +28,7 @@ struct Typed {
   Tokens before;
   std::string word;
   std::size_t begin = 0;
+  bool quoted = false;  // the word is a string that is still open
 };
 
 Typed Cut(const std::string& line) {
@@ -37,6 +38,12 @@ Typed Cut(const std::string& line) {
     if (last.kind == Kind::kName && last.begin + last.text.size() == line.size()) {
       typed.word = last.text;
       typed.begin = last.begin;
+      typed.before.pop_back();
+    } else if (last.kind == Kind::kString && last.text.front() != '[' &&
+               (last.text.size() == 1 || last.text.back() != last.text.front())) {
+      typed.quoted = true;
+      typed.word = last.text.substr(1);
+      typed.begin = last.begin + 1;
       typed.before.pop_back();
     }
   }
@@ -129,25 +136,51 @@ std::size_t FindOpenBrace(const Tokens& tokens) {
   return tokens.size();
 }
 
+// The options of the call whose table is open at the end; null if none is.
+const ManualEntry* FindOptions(lua_State* L, const Tokens& tokens) {
+  const std::size_t brace = FindOpenBrace(tokens);
+  if (brace == tokens.size() || brace == 0) return nullptr;
+  const std::size_t end = tokens[brace - 1].text == "(" ? brace - 1 : brace;
+  if (end == 0 || !PushChain(L, tokens, end)) return nullptr;
+  const Manual& manual = Manual::Get();
+  const ManualEntry* function = manual.Find(FindManualName(L, lua_gettop(L)));
+  return function == nullptr ? nullptr : manual.OptionsOf(*function);
+}
+
 // The options that the call around the end takes, if a new key can begin there.
 std::set<std::string> Options(lua_State* L, const Tokens& tokens) {
   std::set<std::string> words;
-  const std::size_t brace = FindOpenBrace(tokens);
-  if (brace == tokens.size() || brace == 0) return words;
+  if (tokens.empty()) return words;
   const std::string_view last = tokens.back().text;
   if (last != "{" && last != "," && last != ";") return words;
-  const std::size_t end = tokens[brace - 1].text == "(" ? brace - 1 : brace;
-  if (end == 0 || !PushChain(L, tokens, end)) return words;
-  const Manual& manual = Manual::Get();
-  const ManualEntry* function = manual.Find(FindManualName(L, lua_gettop(L)));
-  const ManualEntry* options = function == nullptr ? nullptr : manual.OptionsOf(*function);
+  const ManualEntry* options = FindOptions(L, tokens);
   if (options == nullptr) return words;
   for (const auto& part : options->parts) words.insert(part.name);
   return words;
 }
 
+// What may be in the quotes that open at the end: the values of `key =`, or of its list.
+std::set<std::string> Values(lua_State* L, Tokens tokens) {
+  if (!tokens.empty() && tokens.back().text != "=") {
+    const std::size_t brace = FindOpenBrace(tokens);
+    tokens.resize(std::min(brace, tokens.size()));
+  }
+  if (tokens.size() < 2 || tokens.back().text != "=") return {};
+  const std::string key(tokens[tokens.size() - 2].text);
+  tokens.resize(tokens.size() - 2);
+  const ManualEntry* options = FindOptions(L, tokens);
+  if (options == nullptr) return {};
+  std::set<std::string> words;
+  for (const auto& part : options->parts) {
+    if (part.name != key) continue;
+    for (const std::string& word : Manual::Get().ValuesOf(part.type)) words.insert(word);
+  }
+  return words;
+}
+
 std::set<std::string> Candidates(lua_State* L, const Typed& typed) {
   const Tokens& before = typed.before;
+  if (typed.quoted) return Values(L, before);
   if (!before.empty() && (before.back().text == "." || before.back().text == ":")) {
     if (!PushChain(L, before, before.size() - 1)) return {};
     return Members(L, before.back().text == ":");

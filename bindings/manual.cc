@@ -31,6 +31,21 @@ std::string TakeWord(std::string& text) {
   return word;
 }
 
+}  // namespace
+
+std::vector<std::string> WordsOf(const std::string& type) {
+  std::vector<std::string> words;
+  for (std::size_t at = type.find('"'); at != std::string::npos;) {
+    const std::size_t end = type.find('"', at + 1);
+    if (end == std::string::npos) break;
+    words.push_back(type.substr(at + 1, end - at - 1));
+    at = type.find('"', end + 1);
+  }
+  return words;
+}
+
+namespace {
+
 ManualEntry::Part TakePart(std::string text) {
   ManualEntry::Part part;
   part.name = TakeWord(text);
@@ -112,8 +127,9 @@ Manual::Manual(const std::string& text) {
     } else if (StartsWith(line, "---@alias ")) {
       std::string rest = line.substr(10);
       const std::string name = TakeWord(rest);
-      if (!rest.empty()) continue;  // on one line: a name for a type
+      if (!rest.empty() && rest.front() != '"') continue;  // a name for a type
       entry.name = name;
+      for (const std::string& word : WordsOf(rest)) entry.parts.push_back({word, "", "", false});
     } else if (StartsWith(line, "---| ")) {
       std::string rest = line.substr(5);
       std::string word = TakeWord(rest);
@@ -154,6 +170,16 @@ const ManualEntry* Manual::OptionsOf(const ManualEntry& function) const {
     if (options != nullptr && !options->parts.empty()) return options;
   }
   return nullptr;
+}
+
+std::vector<std::string> Manual::ValuesOf(const std::string& type) const {
+  std::vector<std::string> words = WordsOf(type);
+  const ManualEntry* alias = Find(ClassName(type));
+  if (alias == nullptr || alias->is_function() || alias->parts.empty()) return words;
+  for (const auto& part : alias->parts) {
+    if (part.type.empty()) words.push_back(part.name);
+  }
+  return words;
 }
 
 std::string Manual::Explain(const std::string& name) const {

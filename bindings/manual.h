@@ -21,6 +21,9 @@ struct ManualEntry {
   bool is_function() const { return !signature.empty(); }
 };
 
+/// The words in quotes that a type allows: none, key and all of `"none"|"key"|"all"`.
+std::vector<std::string> WordsOf(const std::string& type);
+
 /// The annotations as data. Their form is held by a test.
 class Manual {
  public:
@@ -38,6 +41,9 @@ class Manual {
 
   /// The table of options that a function takes, or null.
   const ManualEntry* OptionsOf(const ManualEntry& function) const;
+
+  /// The words that a value of a type may be, of the type itself or of the alias that it names.
+  std::vector<std::string> ValuesOf(const std::string& type) const;
 
   /// Help on `name` as a person reads it: a class with fields and methods, or a function with its
   /// options. Empty if there is no such name.

@@ -65,8 +65,8 @@ const StageKeys& PathsKeys() {
   static const StageKeys keys = [] {
     StageKeys made = MakeKeys("PathsOptions", {"paths"});
     made.others = {{"filter",
-                    "---@field filter? fun(path: Path): boolean? says yes to the paths that count; "
-                    "the others keep their ranks and are passed over"}};
+                    "---@field filter? fun(path: Path): boolean? says yes to the paths that count, "
+                    "the others being passed over with their ranks; all"}};
     for (const auto& [key, line] : made.others) made.schema.keys.push_back(key);
     return made;
   }();

@@ -7,6 +7,7 @@
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
+#include "app/core/interrupt.h"
 #include "app/dynamics/tip_overlap.h"
 #include "app/grasp/grasp_room.h"
 #include "app/trajectory/proposals.h"
@@ -92,6 +93,7 @@ std::vector<Mppi::Judged> Mppi::Judge(const std::vector<PlanOutcome>& outcomes,
   std::vector<ScoredState> ends(count);
   std::vector<Judged> judged(count);
   const auto look_at_end = [&](int i, int) {
+    ThrowIfInterrupted();
     ends[i] = EndToScore(*problem_.world, outcomes[i]);
     if (problem_.room == nullptr || outcomes[i].diverged) return;
     judged[i].room = problem_.room->Calc(ends[i].X_WB, KeptContacts(ends[i]));
@@ -139,7 +141,10 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
   const std::vector<std::vector<double>> actions = SampleActions(state);
   const int count = static_cast<int>(actions.size());
   std::vector<PlanOutcome> outcomes(count);
-  pool.ParallelFor(count, [&](int i, int) { outcomes[i] = Simulate(actions[i]); });
+  pool.ParallelFor(count, [&](int i, int) {
+    ThrowIfInterrupted();
+    outcomes[i] = Simulate(actions[i]);
+  });
   const std::vector<Judged> judged = Judge(outcomes, &pool);
   FixScale(state, judged);
   state.samples.assign(count, {});

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bindings/help.h"
 #include "bindings/manual.h"
 #include "bindings/script.h"
@@ -86,6 +88,27 @@ TEST_F(PromptTest, CompletesTheOptionsOfACall) {
   EXPECT_EQ(Complete("sim:move{ by = {0, 0, 0}, "), "> by finger seconds to");
   EXPECT_EQ(Complete("sim:move{ by = si"), "si> sim");  // a value, not an option
   EXPECT_EQ(Complete("pg.wrench{ torque"), "torque> torque_scale");
+}
+
+TEST_F(PromptTest, CompletesTheValuesOfAnOption) {
+  EXPECT_EQ(Complete("s:record{ dir = \"out/x\", pictures = \"no"), "no> none");
+  EXPECT_EQ(Complete("s:record{ pictures = '"), "> all key none");
+  EXPECT_EQ(Complete("sim:touch({ finger = \"in"), "in> index");
+  EXPECT_EQ(Complete("s:shot{ overlay = { \"forces\", \"co"), "co> cones contacts");
+  EXPECT_EQ(Complete("s:shot{ caption = \"x"), "x>");
+}
+
+TEST_F(PromptTest, HelpFindsOptionsOverlaysAndWords) {
+  const Manual& manual = Manual::Get();
+  EXPECT_EQ(manual.Match("sigma").front(), "Optimizer.sigma");
+  EXPECT_EQ(manual.Match("sigma").back(), "OptimizeOptions.sigma");
+  EXPECT_EQ(manual.Match("overlay"), (std::vector<std::string>{"Overlay", "ShotOptions.overlay"}));
+  EXPECT_EQ(manual.Match("ghost"), (std::vector<std::string>{"Overlay.ghost"}));
+  EXPECT_NE(manual.Explain("Overlay.ghost").find("the object at its start"), std::string::npos);
+  EXPECT_NE(manual.Explain("Overlay").find("friction cones"), std::string::npos);
+  const std::vector<std::string> found = manual.Search("friction cone");
+  EXPECT_NE(std::find(found.begin(), found.end(), "Overlay.cones"), found.end());
+  EXPECT_TRUE(manual.Search("zebra").empty());
 }
 
 TEST_F(PromptTest, OffersNothingWhereNothingIsKnownAndCallsNothing) {

@@ -64,29 +64,43 @@ local good = {
     break_when = function() if random(2) == 1 then return predicate() end end,
     settle = function() return { seconds = 0.02 } end,
     shot = function() return { file = "out/x.png", quality = small.quality, size = small.size } end,
-    save = function() return "out/run" .. random(3) end, record = function() return { dir = "out/rec" .. random(2), pictures = "none" } end,
+    save = function() return "out/run" .. random(3) end, save_state = function() return "out/state" .. random(2) end,
+    go = function() return pick{ "scene.start", "graph.score", "graph.prune.3", "paths.rank.1", "path.1.mppi.1", "sim.1", "sim.3" } end,
+    step = function() return pick{ "scene.start", "graph.mesh", "sim.2" } end, why = function() end, check = function() end,
+    what_if = function() return { set = { ["object.mass"] = 0.04 + 0.02 * random() } } end, plan = function() return { paths = 1 } end, record = function() return { dir = "out/rec" .. random(2), pictures = "none" } end,
   },
   Simulation = {
     touch = function() return { finger = pick(fingers), p_OC = point() } end,
     move = function() return { finger = pick(fingers), by = point(), seconds = 0.02 } end,
     lift = function() return { finger = pick(fingers) } end, wait = function() return { seconds = 0.02 } end,
     step = function() return random(6) end, back = function() return random(0, 3) end, fork = function() end,
+    forward = function() return random(0, 3) end, what_if = function() return { set = { ["fingertips.friction"] = random() } } end,
     body = function() return "post" end,
   },
   Graph = {
     score = function() end, prune = function() return { top_percent = 20 } end, prune_step = function() end,
     why = function() return random(0, 143) end, node = function() return random(0, 143) end, top = function() return random(5) end,
-    neighbors = function() return random(0, 143) end, paths = function() return { stages = random(2) } end,
+    triangles = function() return { finger = pick(fingers), count = random(3) } end, forward = function() return random(0, 1) end,
+    path = function() return { random(0, 143), { thumb = random(0, 11), index = random(0, 12) } } end,
+    what_if = function() return { set = { ["environment.post.p"] = { 0, 0, 0.15 } } } end,
+    neighbors = function() return random(0, 143) end, 
+    paths = function() return { stages = random(2), filter = random(2) == 1 and predicate() or nil } end,
     back = function() return random(0, 1) end, fork = function() end,
   },
-  Paths = { next = function() end, top = function() return random(3) end },
-  Path = { optimize = function() return { samples = 4, iterations = 1 } end },
+  Paths = { next = function() end, top = function() return random(3) end, why = function() return random(3) end },
+  Path = { why = function() end, why_not = function() return (any()) end, optimize = function() return { samples = 4, iterations = 1 } end },
   Optimizer = { step = function() end, back = function() return random(0, 1) end, fork = function() return {} end,
-    rollouts = function() end, certify = function() return { hold_seconds = 0.05 } end },
-  Trajectory = { body = function() return "object" end,
+    rollouts = function() end, elite = function() return random(5) end, rollout = function() return random(5) end,
+    trace = function() return random(5) end, why = function() return random(5) end, why_not = function() return random(5) end,
+    run = function() return 1 end, set = function() return { sigma = random() } end, set_nominal = function() return random(0, 5) end,
+    forward = function() return random(0, 1) end, certify = function() return { hold_seconds = 0.05 } end },
+  Trajectory = { why = function() end, body = function() return "object" end,
     grasps = function() return { samples = 1, points = 100, pairs = 100, max_solves = 1, starts = 1, search_sets = 0 } end },
-  Grasps = { all = function() end, best = function() end }, Grasp = { motion = function() return {} end },
-  Motion = { back = function() return 0 end }, Frame = {}, Reason = {}, Shape = {}, Scene = {},
+  Grasps = { all = function() end, best = function() end, why = function() end },
+  Grasp = { motion = function() return {} end, why = function() end },
+  Motion = { back = function() return 0 end, forward = function() return 0 end, why = function() end },
+  Plan = { why = function() end, back = function() return 0 end, forward = function() return random(0, 1) end },
+  Frame = { why = function() end }, Reason = {}, Shape = {}, Scene = {},
 }
 local fields = { "t", "num_steps", "object", "fingers", "contacts", "trace", "step_id", "name", "bodies", "stage", "kept",
   "best_cost", "certified", "reasons", "count", "reason", "text", "node", "rank", "score", "terms", 1, 2, -1, "nothing", "iteration" }
@@ -99,14 +113,14 @@ local function junk(depth)
   elseif n == 11 and depth < 3 then return { [pick(fingers)] = junk(depth + 1), seconds = junk(depth + 1) } end
   return random()
 end
-local costly = { graph = 0.1, certify = 0.1, grasps = 0.1, optimize = 0.3, save = 0.05, record = 0.05, shot = 0.05, motion = 0.1 }
+local costly = { what_if = 0.1, save_state = 0.05, trace = 0.2, check = 0.2, plan = 0.1, graph = 0.1, certify = 0.1, grasps = 0.1, optimize = 0.3, save = 0.05, record = 0.05, shot = 0.05, motion = 0.1 }
 local calls, passed, depth = 0, 0, 0
 local function call()
   local x, kind = any()
   if random(40) == 1 then return pcall(function() return x[pick(fields)] end) end
   local methods = good[kind]
   local names = {} for name in pairs(methods or {}) do names[#names + 1] = name end
-  if #names == 0 or random(40) == 1 then return pcall(pg[pick{ "box", "union", "wrench", "ik", "scene", "open" }], junk(1), junk(1)) end
+  if #names == 0 or random(40) == 1 then return pcall(pg[pick{ "box", "union", "wrench", "ik", "scene", "open", "compare", "check", "load_state" }], junk(1), junk(1)) end
   local name = pick(names)
   if random() > (costly[name] or 1) then calls = calls - 1 return nil end
   local argument

@@ -90,7 +90,8 @@ TEST(MetaTest, OptionsOfThePlannersStagesSayWhatTheTableOfSettingsSays) {
     num_options += schema->keys.size();
   }
   EXPECT_GT(num_options, 50U);
-  const std::regex field(R"(---@field \w+\? (integer|number|boolean|"\w+"(\|"\w+")*) .+; \S+)");
+  const std::regex field(
+      R"(---@field \w+\? (integer|number|boolean|fun\(.+\): boolean\?|"\w+"(\|"\w+")*) .+; \S+)");
   std::istringstream lines(text);
   std::size_t num_fields = 0;
   for (std::string line; std::getline(lines, line);) {

@@ -102,7 +102,9 @@ TEST_F(ReplTerminalTest, CompletesAndRemembersOverSessions) {
     terminal.Type("#s.bod\t\n");
     ASSERT_TRUE(terminal.Await("\n2\r\n> ")) << terminal.rest();
     terminal.Type("s:s\t");
-    ASSERT_TRUE(terminal.Await("save        save_state  settle      shot        simulate    step\r\n")) << terminal.rest();
+    ASSERT_TRUE(
+        terminal.Await("save        save_state  settle      shot        simulate    step\r\n"))
+        << terminal.rest();
     terminal.Type("\x15\x04");  // take back, end
     EXPECT_EQ(terminal.AwaitEnd(), 0);
   }

@@ -32,7 +32,8 @@ TEST(CheckSceneTest, AFloatingBodyIsAnError) {
   Scene scene = MakeRulerScene();
   scene.object().X_WB.translation().z() += 0.05;
   const std::string finding = OneFinding(scene);
-  EXPECT_EQ(finding.find("E ruler.lua:2: \"ruler\" is not at rest: within 1 s it moves 50 mm"), 0U)
+  EXPECT_EQ(finding.find("E ruler.lua:2: \"ruler\" is not at rest: within 1 s it moves 50.00 mm"),
+            0U)
       << finding;
   EXPECT_NE(finding.find("it floats"), std::string::npos) << finding;
 }

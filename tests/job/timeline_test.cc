@@ -7,6 +7,7 @@
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/job/branch_comparison.h"
 #include "app/job/facts_json.h"
 #include "tests/job/fixture.h"
 #include "tests/networks/random_network.h"
@@ -191,6 +192,74 @@ TEST_F(TimelineTest, AnInterruptedActionIsAStepThatRedoesToTheSame) {
   const Applied again = timeline.Try(timeline.root(), node.command.verb, node.command.options);
   StepFacts facts = again.facts;
   EXPECT_FALSE(CompareFacts(facts, node.facts).has_value());
+}
+
+TEST_F(TimelineTest, RestoredStepsAreDoneWhenTheirStateIsAskedForAndGoOnAsTheFirstDid) {
+  const auto job = MakeJob(), other_job = MakeJob();
+  Timeline first(*job), second(*other_job);
+  const Node& done = first.Do(first.Do(MakePath(first), Verb::kIterate), Verb::kIterate);
+  for (const auto& node : first.nodes()) second.Restore(node->facts, 0.0);
+  EXPECT_EQ(second.nodes().size(), first.nodes().size());
+  const Node& restored = second.Find(done.id());
+  EXPECT_EQ(CompareFacts(restored.facts, done.facts), std::nullopt);
+  EXPECT_EQ(&second.Do(*restored.parent, Verb::kIterate), &restored);  // known without its state
+  const Node &next = first.Do(done, Verb::kIterate), &again = second.Do(restored, Verb::kIterate);
+  EXPECT_EQ(CompareFacts(again.facts, next.facts), std::nullopt);
+}
+
+TEST_F(TimelineTest, ARecordThatDiffersIsRefusedWhereItDoes) {
+  const auto job = MakeJob(), other_job = MakeJob();
+  Timeline first(*job), second(*other_job);
+  const Node& done = first.Do(MakePath(first), Verb::kIterate);
+  for (const auto& node : first.nodes()) {
+    StepFacts facts = node->facts;
+    if (auto* iteration = std::get_if<IterationFacts>(&facts.details)) iteration->best_cost += 1e-9;
+    second.Restore(facts, 0.0);
+  }
+  try {
+    second.GetState(second.Find(done.id()));
+    ADD_FAILURE() << "it was believed";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where(), "path.1.mppi.1");
+    EXPECT_EQ(error.field(), "details.best_cost");
+  }
+  StepFacts twice = done.facts;
+  EXPECT_THROW(second.Restore(twice, 0.0), InputError);
+  twice.id = "path.1.mppi.9";
+  twice.command.node = "path.1.mppi.8";
+  EXPECT_THROW(second.Restore(twice, 0.0), InputError);
+}
+
+TEST_F(TimelineTest, AGateIsAskedOfEachStepAndStopsBeforeTheNext) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  const Node& path = MakePath(timeline);
+  int asked = 0;
+  timeline.SetGate([&](const Node&) { return ++asked < 2; });
+  const Node& first = timeline.Do(path, Verb::kIterate);
+  EXPECT_EQ(&timeline.Do(path, Verb::kIterate), &first);
+  EXPECT_THROW(timeline.Do(first, Verb::kIterate), Paused);
+  EXPECT_EQ(asked, 2);
+  timeline.SetGate({});
+  timeline.Do(first, Verb::kIterate);
+}
+
+TEST_F(TimelineTest, TwoBranchesDifferFirstInWhatWasAskedFor) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  const Node& first = timeline.Do(MakePath(timeline), Verb::kIterate);
+  const Node& one = timeline.Do(timeline.Do(first, Verb::kIterate), Verb::kIterate);
+  const Node& other = timeline.Do(first, Verb::kIterate, {{"settings", {{"mppi.sigma", 0.3}}}});
+  const BranchComparison comparison = CompareBranches(timeline, one, timeline, other);
+  EXPECT_EQ(comparison.common, &first);
+  EXPECT_EQ(comparison.left, one.parent);
+  EXPECT_EQ(comparison.right, &other);
+  ASSERT_TRUE(comparison.command && comparison.facts);
+  EXPECT_EQ(comparison.command->field, "mppi.sigma");
+  EXPECT_EQ(comparison.command->left, "1.2");
+  EXPECT_EQ(comparison.same_noise, true);
+  ASSERT_EQ(comparison.settings.size(), 1U);
+  EXPECT_TRUE(CompareBranches(timeline, one, timeline, one).same());
 }
 
 }  // namespace

@@ -8,8 +8,10 @@
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/job/facts_json.h"
 #include "app/recording/checked_file.h"
 #include "app/recording/loaded_run.h"
+#include "app/session/saved_state.h"
 #include "tests/job/fixture.h"
 #include "tests/test_folder.h"
 
@@ -226,6 +228,42 @@ TEST_F(SessionTest, RefusesOverlapsSettlingLateAndTwoRecordings) {
   EXPECT_THROW(session.Settle(1.0), InputError);
   session.Record(folder_ / "a", PictureMode::kNone);
   EXPECT_THROW(session.Record(folder_ / "b", PictureMode::kNone), InputError);
+}
+
+TEST_F(SessionTest, AFinishedRunGoesOnWhereItStoodToTheLastBit) {
+  const TestFolder folder;
+  Session session(MakeRulerScene(), {});
+  session.Settle(0.1);
+  const Node& pulled = Pull(session);
+  session.SaveState(folder.path() / "state", pulled);
+  const Node& moved = Move(session, pulled, {0.01, 0, 0}, 0.2);
+
+  const ResumedSession resumed = ResumeSession(folder.path() / "state", 1, {});
+  ASSERT_EQ(resumed.node->id(), pulled.id());
+  EXPECT_EQ(resumed.session->start().id(), "scene.settle");
+  EXPECT_EQ(resumed.session->timeline().nodes().size() + 1, session.timeline().nodes().size());
+  const Node& again = Move(*resumed.session, *resumed.node, {0.01, 0, 0}, 0.2);
+  EXPECT_EQ(CompareFacts(again.facts, moved.facts), std::nullopt);
+}
+
+TEST_F(SessionTest, ARunThatWasChangedIsNotGoneOnFrom) {
+  const TestFolder folder;
+  Session session(MakeRulerScene(), {});
+  session.SaveState(folder.path() / "state", Wait(session, 0.1));
+  std::ofstream(folder.path() / "state/steps.jsonl", std::ios::app) << "\n";
+  EXPECT_THROW(ResumeSession(folder.path() / "state", 1, {}), InputError);
+  EXPECT_THROW(ResumeSession(folder.path() / "nothing", 1, {}), InputError);
+}
+
+TEST_F(SessionTest, WhatARecordingFailedForIsInItsManifest) {
+  const TestFolder folder;
+  Session session(MakeRulerScene(), {});
+  session.Record(folder.path() / "run", PictureMode::kNone);
+  Wait(session, 0.1);
+  session.FinishRecording("failed", nullptr, "a.lua:3: no");
+  const LoadedRun run = LoadRun(folder.path() / "run");
+  EXPECT_EQ(run.summary.status, "failed");
+  EXPECT_EQ(run.manifest["error"], "a.lua:3: no");
 }
 
 }  // namespace

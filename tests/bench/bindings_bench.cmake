@@ -1,0 +1,3 @@
+pregrasp_bench(bindings_bench
+  SOURCES bindings_bench.cc
+  DEPENDS pregrasp_bindings)
