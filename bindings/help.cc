@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/core/text.h"
+#include "app/job/planner_settings.h"
 #include "bindings/manual.h"
 #include "bindings/protect.h"
 #include "bindings/schema.h"
@@ -45,9 +46,20 @@ std::string FindFunctionName(lua_State* L, int index) {
   return "";
 }
 
+// A planner's setting by its full name, "mppi.sigma".
+std::string ExplainSetting(const std::string& name) {
+  for (const PlannerSetting& setting : SettingsTable()) {
+    if (setting.name != name) continue;
+    const std::string rule = setting.rule.Text();
+    return setting.name + "  " + setting.Values() + "  " + setting.meaning + "; " +
+           FieldText(setting.Default()) + (rule.empty() ? "" : ", within the rules " + rule) + '\n';
+  }
+  return "";
+}
+
 std::string ExplainWord(const std::string& word) {
   const Manual& manual = Manual::Get();
-  std::string text;
+  std::string text = ExplainSetting(word);
   for (const std::string& name : manual.Match(word)) {
     if (!text.empty()) text += '\n';
     text += manual.Explain(name);

@@ -169,11 +169,21 @@ Pushed ComparePlaces(lua_State* L, const AnyPlace& a, const AnyPlace& b) {
   return {1};
 }
 
+// A link could lead out of the folders that a script may read; a run has but one, for MRPT's tools.
+void RefuseLinks(const std::filesystem::path& run) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(run)) {
+    if (!entry.is_symlink() || entry.path().filename() == "pictures_Images") continue;
+    throw InputError("", "dir", "a run of plain files",
+                     "a link, " + entry.path().filename().string());
+  }
+}
+
 // load_state(dir): the session, and the object at the step where it stood.
 Pushed LoadState(lua_State* L, const std::string& dir) {
   const ScriptContext& context = ScriptContext::Of(L);
   const std::filesystem::path run =
       Machine::Of(L).files().FindForReading(dir + "/manifest.json").parent_path();
+  RefuseLinks(run);
   constexpr int kSessionKib = 2000, kStepKib = 30;
   CountMemory(L, kSessionKib);
   MemoryClaim claim = ClaimMemory(L, std::size_t{kSessionKib} << 10U);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <vector>
 
 #include "bindings/sandbox.h"
@@ -101,6 +103,21 @@ std::string NameOf(lua_State* L, int index) {
 
 std::string Inline(lua_State* L, int index, int depth);
 
+// Below this share of the largest number of a list, one is rounding: a normal's -2e-09.
+constexpr double kRounding = 1e-7;
+
+// What is rounding in a list of `count` entries; 0 for one that is not of numbers.
+double RoundingOf(lua_State* L, int index, int count) {
+  double largest = 0.0;
+  for (int i = 1; i <= count; ++i) {
+    const bool number = lua_rawgeti(L, index, i) == LUA_TNUMBER;
+    largest = number ? std::max(largest, std::abs(lua_tonumber(L, -1))) : 0.0;
+    lua_pop(L, 1);
+    if (!number) return 0.0;
+  }
+  return kRounding * largest;
+}
+
 std::string InlineList(lua_State* L, int index, int count, int depth) {
   lua_rawgeti(L, index, 1);
   const std::string kind = NameOf(L, lua_gettop(L));
@@ -108,9 +125,12 @@ std::string InlineList(lua_State* L, int index, int count, int depth) {
   if (!kind.empty()) return fmt::format("{} {}", count, kind);
   if (depth >= kMostNested) return fmt::format("{{{} entries}}", count);
   std::string text = "{";
-  for (int i = 1; i <= std::min(count, kMostInline); ++i) {
-    lua_rawgeti(L, index, i);
-    text += (i > 1 ? ", " : "") + Inline(L, lua_gettop(L), depth + 1);
+  const int shown = std::min(count, kMostInline);
+  const double rounding = RoundingOf(L, index, shown);
+  for (int i = 1; i <= shown; ++i) {
+    const bool number = lua_rawgeti(L, index, i) == LUA_TNUMBER;
+    const bool nothing = number && std::abs(lua_tonumber(L, -1)) < rounding;
+    text += (i > 1 ? ", " : "") + (nothing ? "0" : Inline(L, lua_gettop(L), depth + 1));
     lua_pop(L, 1);
   }
   return text + (count > kMostInline ? fmt::format(", .. {} in all}}", count) : "}");
@@ -217,10 +237,41 @@ std::string ShowList(lua_State* L, int index, int count, int width) {
   return text;
 }
 
-// The fields of a table or object, a row each.
+// A record's or an object's sentence, if it has one: the field `text`, or `sentence`.
+std::optional<std::string> FindSentence(lua_State* L, int index) {
+  if (NameOf(L, index).empty()) return std::nullopt;
+  const std::vector<std::string> names = FieldNames(L, index);
+  for (const char* name : {"text", "sentence"}) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
+    PushField(L, index, name);
+    std::optional<std::string> sentence;
+    if (lua_type(L, -1) == LUA_TSTRING) sentence = lua_tostring(L, -1);
+    lua_pop(L, 1);
+    return sentence;
+  }
+  return std::nullopt;
+}
+
+// In lines of at most `width` bytes, broken at blanks.
+std::string Wrap(const std::string& text, std::size_t width) {
+  std::string wrapped;
+  std::size_t begin = 0;
+  while (text.size() - begin > width) {
+    std::size_t end = text.rfind(' ', begin + width);
+    if (end == std::string::npos || end <= begin) break;
+    AddLine(wrapped, text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  AddLine(wrapped, text.substr(begin));
+  return wrapped;
+}
+
+// The fields of a table or object, a row each; its sentence, which is shown before them, left out.
 std::string ShowFields(lua_State* L, int index, int width) {
   std::vector<Row> rows;
+  const bool told = FindSentence(L, index).has_value();
   for (const std::string& name : FieldNames(L, index)) {
+    if (told && (name == "text" || name == "sentence")) continue;
     PushField(L, index, name);
     rows.push_back({"  " + name, Inline(L, lua_gettop(L), 0)});
     lua_pop(L, 1);
@@ -232,8 +283,18 @@ std::string ShowFields(lua_State* L, int index, int width) {
   return Align(rows, width, static_cast<std::size_t>(width));
 }
 
+// The list `items` of a record with a sentence: the numbers that the sentence is made of.
+void AddItems(lua_State* L, int index, int width, std::string& text) {
+  const std::vector<std::string> names = FieldNames(L, index);
+  if (std::find(names.begin(), names.end(), "items") == names.end()) return;
+  PushField(L, index, "items");
+  const auto count = lua_istable(L, -1) ? static_cast<int>(lua_rawlen(L, -1)) : 0;
+  if (count > 0) AddLine(text, ShowRecords(L, lua_gettop(L), count, width));
+  lua_pop(L, 1);
+}
+
 std::string ShowObject(lua_State* L, int index, const ClassInfo& info, int width) {
-  std::string text = ShowText(L, index);
+  std::string text = Wrap(ShowText(L, index), static_cast<std::size_t>(width));
   const std::string fields = ShowFields(L, index, width);
   if (!fields.empty()) AddLine(text, fields);
   std::string methods = " ";
@@ -260,8 +321,12 @@ std::string ShowValue(lua_State* L, int index, int width) {
     const auto count = static_cast<int>(lua_rawlen(L, value));
     const std::string fields = ShowFields(L, value, width);
     text = NameOf(L, value);
+    if (const auto sentence = FindSentence(L, value)) {
+      AddLine(text, Wrap(*sentence, static_cast<std::size_t>(width)));
+    }
     if (count > 0) AddLine(text, ShowList(L, value, count, width));
     if (!fields.empty()) AddLine(text, fields);
+    if (FindSentence(L, value)) AddItems(L, value, width, text);
     if (text.empty()) text = "{}";
   } else {
     text = Inline(L, value, 0);

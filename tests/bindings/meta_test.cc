@@ -8,6 +8,9 @@
 #include <sstream>
 #include <string>
 
+#include "app/core/error.h"
+#include "app/session/picture_file.h"
+#include "bindings/manual.h"
 #include "bindings/planner_options.h"
 #include "bindings/script.h"
 
@@ -104,6 +107,23 @@ TEST(MetaTest, OptionsOfThePlannersStagesSayWhatTheTableOfSettingsSays) {
   EXPECT_TRUE(
       has("---@field temperature? number lambda over the standard deviation of the better "
           "half's costs, 1e-06 to 1e+06; 0.5"));
+}
+
+TEST(MetaTest, TheOverlaysOfTheManualAreThoseOfPictures) {
+  std::string names;
+  const ManualEntry* overlay = Manual::Get().Find("Overlay");
+  ASSERT_NE(overlay, nullptr);
+  for (const auto& part : overlay->parts) {
+    EXPECT_FALSE(part.text.empty()) << part.name;
+    names += (names.empty() ? "" : ", ") + part.name;
+  }
+  PictureConfig config;
+  try {
+    SetOverlays(config, {"nothing"});
+    ADD_FAILURE() << "it was taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.expected(), "some of " + names);
+  }
 }
 
 }  // namespace

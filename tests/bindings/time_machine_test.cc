@@ -133,6 +133,22 @@ TEST_F(TimeMachineTest, AStateThatWasChangedIsRefused) {
             std::string::npos);
 }
 
+TEST_F(TimeMachineTest, AStateCannotLeadOutOfTheSandbox) {
+  Script(R"(local s = session() s:simulate():step() s:save_state("out/state"))");
+  const auto state = folder_.path() / "out/state";
+  const TestFolder elsewhere;
+  std::filesystem::rename(state / "scene.json", elsewhere.path() / "scene.json");
+  std::filesystem::create_symlink(elsewhere.path() / "scene.json", state / "scene.json");
+  EXPECT_EQ(Failure("pg.load_state 'out/state'"),
+            "load_state: dir: expected a run of plain files, got a link, scene.json");
+  EXPECT_NE(Failure("pg.load_state '" + elsewhere.path().string() + "'").find("load_state:"),
+            std::string::npos);
+  EXPECT_NE(
+      Failure("session():save_state '" + elsewhere.path().string() + "/x'").find("save_state:"),
+      std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(elsewhere.path() / "x"));
+}
+
 TEST_F(TimeMachineTest, TwoForksSayWhatDiffersFirst) {
   EXPECT_EQ(
       Script(R"(
