@@ -208,6 +208,7 @@ AnyPlace LuaValue<AnyPlace>::Read(lua_State* L, int index, const std::string& pa
   }
   if (const auto graph = FindObject<LuaGraph>(L, index)) return of(*graph);
   if (const auto path_object = FindObject<LuaPath>(L, index)) {
+    if (!path_object->recorded()) RequireNotAsking(L, path_object->cursor.session.get());
     path_object->Record();
     return of(path_object->cursor);
   }

@@ -28,6 +28,13 @@ double ThreadSeconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+// Needs no system call, as the thread's CPU time does: that takes as long as a short call of ours.
+double WallSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 double CoarseSeconds() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC_COARSE, &now);
@@ -175,27 +182,42 @@ void Machine::RaiseIfInterrupted(lua_State* L) {
   RaiseIfStopped(L);
 }
 
-double Machine::LuaSeconds() const {
-  const double now = pauses_ > 0 ? paused_since_ : ThreadSeconds();
-  return now - start_ - paused_;
+double Machine::LuaSeconds() {
+  if (pauses_ == 0) read_ = ThreadSeconds();
+  return read_ - start_ - paused_;
+}
+
+void Machine::BeginPause() { paused_since_ = WallSeconds(); }
+
+// A pause is as long as the wall says where it is short, and never longer than the CPU time since
+// that was read last: while the thread waits, none passes.
+void Machine::EndPause() {
+  constexpr double kShort = 5e-5;  // [s]
+  double seconds = WallSeconds() - paused_since_;
+  if (seconds > kShort) {
+    const double now = ThreadSeconds();
+    seconds = std::min(seconds, now - read_);
+    read_ = now;
+  }
+  paused_ += seconds;
 }
 
 Machine::Pause::Pause(lua_State* L) : machine_(Machine::Of(L)) {
-  if (machine_.pauses_++ == 0) machine_.paused_since_ = ThreadSeconds();
+  if (machine_.pauses_++ == 0) machine_.BeginPause();
 }
 
 Machine::Pause::~Pause() {
-  if (--machine_.pauses_ == 0) machine_.paused_ += ThreadSeconds() - machine_.paused_since_;
+  if (--machine_.pauses_ == 0) machine_.EndPause();
 }
 
 Machine::Resume::Resume(lua_State* L)
     : machine_(Machine::Of(L)), pauses_(std::exchange(machine_.pauses_, 0)) {
-  if (pauses_ > 0) machine_.paused_ += ThreadSeconds() - machine_.paused_since_;
+  if (pauses_ > 0) machine_.EndPause();
 }
 
 Machine::Resume::~Resume() {
   machine_.pauses_ = pauses_;
-  if (pauses_ > 0) machine_.paused_since_ = ThreadSeconds();
+  if (pauses_ > 0) machine_.BeginPause();
 }
 
 void Machine::Stop(lua_State* L, StopReason reason, const std::string& message) {
@@ -344,7 +366,7 @@ void Machine::Call(int arguments, int results) {
   lua_insert(L_, function);
   lua_sethook(L_, OnHook, LUA_MASKCOUNT,
               long_strings_.empty() ? kHookInstructions : kHookWithLongStrings);
-  start_ = ThreadSeconds();
+  start_ = read_ = ThreadSeconds();
   paused_ = 0.0;
   running_ = true;
   const int status = lua_pcall(L_, arguments, results, function);

@@ -139,7 +139,9 @@ class Machine {
   static int HandleMessage(lua_State* L);
   bool Fits(std::size_t bytes) const;
   void WatchLongStrings();
-  double LuaSeconds() const;
+  double LuaSeconds();
+  void BeginPause();
+  void EndPause();
   std::string TimeMessage() const;
   std::string WithFullNames(std::string message) const;
   [[noreturn]] void ThrowLuaError(int status);
@@ -154,7 +156,8 @@ class Machine {
   bool running_ = false;
   StopReason stop_reason_ = StopReason::kNone;
   std::string stop_message_;
-  double start_ = 0.0, paused_since_ = 0.0, paused_ = 0.0;  // [s] of the thread's CPU
+  double start_ = 0.0, read_ = 0.0, paused_ = 0.0;  // [s] of the thread's CPU; read_ is the latest
+  double paused_since_ = 0.0;                       // [s] of the wall's clock
   int pauses_ = 0;
   int typed_environment_ = LUA_NOREF;
   std::vector<std::string> traceback_;

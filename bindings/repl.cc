@@ -76,9 +76,8 @@ class Repl {
 
   void OpenScene(const std::filesystem::path& scene);
   void ReadAll();
-  void Finish(const std::optional<std::string>& status, const std::string& error = "") {
-    script_.FinishRecordings(status, error);
-  }
+  void Finish(const std::optional<std::string>& status) { script_.FinishRecordings(status); }
+  void FinishFailed(const std::string& error) { script_.FinishFailedRecordings(error); }
 
  private:
   void Greet() const;
@@ -234,7 +233,7 @@ void RunRepl(const std::optional<std::filesystem::path>& scene, const ScriptConf
       repl.Finish("interrupted");
       throw;
     } catch (const InputError& error) {
-      repl.Finish("failed", OneLine(error.what()));
+      repl.FinishFailed(error.what());
       throw;
     }
     repl.Finish(std::nullopt);

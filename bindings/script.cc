@@ -209,6 +209,14 @@ void ScriptMachine::FinishRecordings(const std::optional<std::string>& status,
   }
 }
 
+void ScriptMachine::FinishFailedRecordings(const std::string& error) {
+  try {
+    FinishRecordings("failed", OneLine(error));
+  } catch (const InputError&) {
+    // It cannot be kept; what it failed for is told all the same.
+  }
+}
+
 void LeaveNothingOnFailure(const ScriptConfig& config, const std::function<void()>& body) {
   std::error_code ignored;
   const bool had_output = fs::exists(config.output, ignored);
@@ -242,7 +250,7 @@ void RunInMachine(const fs::path& file, const std::vector<std::string>& argument
     script.FinishRecordings("interrupted");
     throw;
   } catch (const InputError& error) {
-    script.FinishRecordings("failed", OneLine(error.what()));
+    script.FinishFailedRecordings(error.what());
     throw;
   }
   script.FinishRecordings(std::nullopt);

@@ -68,6 +68,8 @@ class ScriptMachine {
 
   /// Ends the recordings that are open. @param status, error  as Session::FinishRecording.
   void FinishRecordings(const std::optional<std::string>& status, const std::string& error = "");
+  /// The same with status "failed" after an error, as far as it can be done.
+  void FinishFailedRecordings(const std::string& error);
 
  private:
   ScriptContext context_;  // outlives the machine

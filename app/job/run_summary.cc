@@ -238,20 +238,21 @@ std::vector<WorldState> GetRollout(const JobState& state) {
 std::optional<std::string> StatusAt(const Timeline& timeline, const Node& node) {
   const VerdictFacts* verdict = FindVerdict(timeline);
   if (verdict != nullptr && verdict->feasible > 0) return "start_graspable";
-  const auto state = timeline.GetState(node);
+  // Asked for where it counts alone: a recorded step has to be done again for it.
+  const auto state = [&] { return timeline.GetState(node); };
   switch (node.progress.reached) {
     case Progress::Reached::kNothing:
       return std::nullopt;
     case Progress::Reached::kTrajectory:
       return "not_certified";
     case Progress::Reached::kCertified:
-      if (AllGraspsTried(*state)) return "no_feasible_grasp";
+      if (AllGraspsTried(*state())) return "no_feasible_grasp";
       return std::nullopt;
     case Progress::Reached::kFeasible:
-      if (AllGraspsTried(*state) && AllFeasibleLifted(*state)) return "lift_failed";
+      if (AllGraspsTried(*state()) && AllFeasibleLifted(*state())) return "lift_failed";
       return std::nullopt;
     case Progress::Reached::kLifted:
-      if (IsMotionDecided(*state)) return "motion_failed";
+      if (IsMotionDecided(*state())) return "motion_failed";
       return std::nullopt;
     case Progress::Reached::kMoved:
       return "neighbours_disturbed";

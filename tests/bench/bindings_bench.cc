@@ -22,7 +22,8 @@ void RunLoop(benchmark::State& state, const std::string& body) {
       "local g = s:graph{{ triangles = 12, samples = 1, points = 128 }}\n"
       "return function() for _ = 1, {} do {} end end",
       kCalls, body);
-  ScriptMachine machine{ScriptConfig{}};
+  const ScriptConfig config;
+  ScriptMachine machine(config);
   machine.machine().LoadFile(machine.machine().state(), file);
   machine.machine().Call(0, 1);
   lua_State* L = machine.machine().state();
@@ -44,3 +45,5 @@ BENCHMARK(BM_RecordOfARow);
 
 }  // namespace
 }  // namespace pregrasp
+
+BENCHMARK_MAIN();
