@@ -21,30 +21,44 @@ const Schema kScoreChange{"ScoreChange", {"id", "thumb", "index", "a", "b", "cha
 
 using Node = Timeline::Node;
 
-// The last step on the way to `node`, itself included, whose verb is `verb`; null.
-const Node* FindVerb(const Node& node, Verb verb) {
+// The last step on the way to `node`, itself included, whose verb is `verb`. @throws InputError for
+// a record that has none, which no planner makes.
+const Node& FindVerb(const Node& node, Verb verb) {
   const Node* at = &node;
   while (at != nullptr && at->command.verb != verb) at = at->parent;
-  return at;
+  if (at == nullptr) {
+    throw InputError(node.id(), "", fmt::format("a step after \"{}\"", VerbName(verb)),
+                     "one without");
+  }
+  return *at;
+}
+
+// The first step after the last one of `verb` on the way to `node`, which is not it.
+const Node& FirstAfter(const Node& node, Verb verb) {
+  const Node& before = FindVerb(node, verb);
+  const Node* at = &node;
+  while (at->parent != &before) at = at->parent;
+  return *at;
 }
 
 // The first step of a motion: its first keyframe.
 const Node& FirstKeyframe(const Node& node) {
-  const Node* at = &node;
-  while (at->parent->command.verb == Verb::kKeyframe || at->command.verb != Verb::kKeyframe) {
-    at = at->parent;
-  }
+  const Node* at = &FindVerb(node, Verb::kKeyframe);
+  while (at->parent->command.verb == Verb::kKeyframe) at = at->parent;
   return *at;
 }
 
 // The grasp of a step that tested it, or lifted it.
 std::shared_ptr<LuaGrasp> FindGrasp(const std::shared_ptr<Session>& session, const Node& node) {
-  const Node* first = &node;  // the first sample of the same certificate
-  while (first->parent->command.verb != Verb::kCertify) first = first->parent;
+  const Node& first = FirstAfter(node, Verb::kCertify);
   const auto* lift = std::get_if<LiftFacts>(&node.facts.details);
   const int entry = lift != nullptr ? lift->grasp : std::get<GraspFacts>(node.facts.details).entry;
-  return FindGrasps(session, *first->parent, first->command.options)
-      ->grasps.at(static_cast<std::size_t>(entry) - 1);
+  const auto grasps = FindGrasps(session, *first.parent, first.command.options);
+  if (entry < 1 || entry > std::ssize(grasps->grasps)) {
+    throw InputError(node.id(), "entry", fmt::format("1 to {}", grasps->grasps.size()),
+                     std::to_string(entry));
+  }
+  return grasps->grasps[static_cast<std::size_t>(entry) - 1];
 }
 
 // A step of the planner as the object that goes on from it.
@@ -58,14 +72,14 @@ void PushStep(lua_State* L, const std::shared_ptr<Session>& session, const Node&
     case Verb::kScore:
     case Verb::kPrune:
       return PushObject(
-          L, std::make_shared<LuaGraph>(LuaGraph{{session, &node}, FindVerb(node, Verb::kMesh)}));
+          L, std::make_shared<LuaGraph>(LuaGraph{{session, &node}, &FindVerb(node, Verb::kMesh)}));
     case Verb::kPath:
       return PushObject(L, std::make_shared<LuaPath>(LuaPath{
                                {session, &node}, session->timeline().GetState(node)->path}));
     case Verb::kScreen:
     case Verb::kIterate:
       return PushObject(L, std::make_shared<LuaOptimizer>(
-                               LuaOptimizer{{session, &node}, FindVerb(node, Verb::kPath)}));
+                               LuaOptimizer{{session, &node}, &FindVerb(node, Verb::kPath)}));
     case Verb::kCertify:
       return PushObject(L, std::make_shared<LuaTrajectory>(LuaTrajectory{{session, &node}}));
     case Verb::kGrasp:
@@ -75,7 +89,7 @@ void PushStep(lua_State* L, const std::shared_ptr<Session>& session, const Node&
     case Verb::kFill:
     case Verb::kSmooth: {
       const Node& first = FirstKeyframe(node);
-      const int grasp = first.command.options.at("grasp").get<int>();
+      const int grasp = CommandOptions(first.command).Int("grasp");
       return PushObject(
           L, std::make_shared<LuaMotion>(LuaMotion{{session, &node}, first.parent, grasp}));
     }
@@ -89,7 +103,8 @@ void PushStep(lua_State* L, const std::shared_ptr<Session>& session, const Node&
       while (std::holds_alternative<SimulationFacts>(first->parent->facts.details)) {
         first = first->parent;
       }
-      const bool traced = first->command.options.value("trace", false);
+      const auto trace = first->command.options.find("trace");
+      const bool traced = trace != first->command.options.end() && *trace == true;
       return PushObject(L, std::make_shared<LuaSimulation>(LuaSimulation{session, &node, traced}));
     }
   }

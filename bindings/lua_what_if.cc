@@ -27,7 +27,7 @@ std::shared_ptr<Session> OpenChanged(lua_State* L, Session& session, const WhatI
   changed->claim() = std::move(claim);
   const Timeline::Node& start = session.start();
   if (start.command.verb == Verb::kSettle) {
-    changed->Settle(start.command.options.at("seconds").get<double>());
+    changed->Settle(CommandOptions(start.command).Number("seconds"));
   }
   return changed;
 }
