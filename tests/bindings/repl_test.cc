@@ -69,6 +69,24 @@ TEST(ReplPipeTest, TheFirstErrorIsOneLineWithItsLineAndEndsIt) {
             "stdin:1: out of time after 0.1 s of Lua (--time gives it more)\n");
 }
 
+TEST(ReplPipeTest, PrintShowsWhatAnExpressionDoesAndASentenceWhole) {
+  const TestFolder folder;
+  EXPECT_EQ(Pipe("print({1, 2}, 'a', 1.5)\n", folder).out, "{1, 2}\ta\t1.5\n");
+  const std::string shown = Pipe("s:check()\n", folder).out;
+  EXPECT_EQ(shown, Pipe("print(s:check())\n", folder).out);
+  EXPECT_EQ(shown.rfind("Check\nclean: at rest, no overlaps\n", 0), 0U) << shown;
+}
+
+TEST(ReplPipeTest, TheCommandLineSaysItsVersionAndTakesThreadsForCheck) {
+  const TestFolder folder;
+  const ProgramResult version = RunProgram({"--version"}, folder.path());
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.rfind("pregrasp ", 0), 0U) << version.out;
+  const std::string scene =
+      (std::filesystem::path(PREGRASP_SOURCE_DIR) / "scenes/ruler.lua").string();
+  EXPECT_EQ(RunProgram({"check", scene, "--threads", "1", "--no-grasps"}, folder.path()).code, 0);
+}
+
 TEST(ReplPipeTest, ARecordingIsFinishedAtTheEnd) {
   const TestFolder folder;
   const ProgramResult result =
