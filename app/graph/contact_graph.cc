@@ -1,5 +1,7 @@
 #include "app/graph/contact_graph.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -201,6 +203,26 @@ void ContactGraph::Score(const SignedDistance& shape, const PlacementScorer& con
       PREGRASP_CHECK(AreFinite(node.s_c, node.s_n, node.occluded), node.id);
     }
   }
+  RankNodes();
+}
+
+void ContactGraph::TakeScores(const Scores& scores) {
+  for (const std::vector<double>* values : {&scores.s_c, &scores.s_n, &scores.occluded}) {
+    if (values->size() != nodes_.size()) {
+      throw InputError("", "scores", fmt::format("one for each of {} nodes", nodes_.size()),
+                       std::to_string(values->size()));
+    }
+  }
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    nodes_[i].s_c = scores.s_c[i];
+    nodes_[i].s_n = scores.s_n[i];
+    nodes_[i].occluded = scores.occluded[i];
+    nodes_[i].thumb_fits = nodes_[i].index_fits = true;
+  }
+  RankNodes();
+}
+
+void ContactGraph::RankNodes() {
   order_c_ = OrderBy(nodes_, &ContactNode::s_c, &ContactNode::s_n);
   order_n_ = OrderBy(nodes_, &ContactNode::s_n, &ContactNode::s_c);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {

@@ -80,6 +80,11 @@ struct NodeReason {
 /// function below takes it one step further, so that a copy is a point in time to come back to.
 class ContactGraph {
  public:
+  /// What scoring finds out, by node, for TakeScores.
+  struct Scores {
+    std::vector<double> s_c, s_n, occluded;
+  };
+
   /// All ordered pairs of triangles of `mesh` as nodes, without scores.
   ContactGraph(TriangleMesh mesh, const ContactGraphConfig& config);
 
@@ -89,6 +94,11 @@ class ContactGraph {
   /// triangle. @param shape  the object's true surface.
   void Score(const SignedDistance& shape, const PlacementScorer& context,
              const PlacementScorer& free, std::uint64_t seed);
+
+  /// In place of Score: the scores that a finished run has recorded. Where fingertips fit is not
+  /// among them and counts as if they did everywhere; pruning and Why do not depend on it but for
+  /// what Why says of it. @throws InputError unless there is one of each for every node.
+  void TakeScores(const Scores& scores);
 
   /// Sets the paper's M anew. @throws InputError once pruning has begun.
   void SetTopPercent(double top_percent);
@@ -121,6 +131,7 @@ class ContactGraph {
   NodeReason Why(int id) const;
 
  private:
+  void RankNodes();
   int NumKeptEach() const;
   // Of the cut by one of the scores.
   void ExplainCut(const std::vector<int>& order, double ContactNode::*score, int rank,

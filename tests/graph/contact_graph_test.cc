@@ -83,6 +83,30 @@ TEST(ContactGraphTest, WhereTheCutGoesThroughEqualScoresTheOtherScoreDecidesAndT
   EXPECT_GT(worst_kept, best_pruned);
 }
 
+TEST(ContactGraphTest, ScoresThatWereRecordedGiveTheSameGraphAndTheSameReasons) {
+  ContactGraph graph = MakeScoredGraph(NoThumbScorer(3.0), AnalyticScorer(50.0), 13.8);
+  ContactGraph::Scores scores;
+  for (const ContactNode& node : graph.nodes()) {
+    scores.s_c.push_back(node.s_c);
+    scores.s_n.push_back(node.s_n);
+    scores.occluded.push_back(node.occluded);
+  }
+  ContactGraph again(graph.mesh(), graph.config());
+  again.TakeScores(scores);
+  for (ContactGraph* each : {&graph, &again}) each->Prune();
+  EXPECT_EQ(again.kept(), graph.kept());
+  for (const ContactNode& node : graph.nodes()) {
+    const NodeReason a = graph.Why(node.id), b = again.Why(node.id);
+    EXPECT_EQ(a.verdict, b.verdict);
+    EXPECT_EQ(a.node.rank_c, b.node.rank_c);
+    EXPECT_EQ(a.node.rank_n, b.node.rank_n);
+    EXPECT_EQ(a.rule_c, b.rule_c);
+    EXPECT_EQ(a.node.occluded, b.node.occluded);
+  }
+  scores.s_n.pop_back();
+  EXPECT_THROW(again.TakeScores(scores), InputError);
+}
+
 TEST(ContactGraphTest, NodesAlikeInBothScoresStayByNumberAndTheReasonSaysSo) {
   ContactGraph graph = MakeScoredGraph(ConstantScorer(), ConstantScorer(), 10.0);
   graph.Prune();
