@@ -20,13 +20,24 @@ struct CardLine {
   double height() const { return std::round(size * (title ? 1.62 : 1.5)); }
 };
 
+// A title that would be broken is set smaller first, down to the size of prose.
+float TitleSize(FontSet& fonts, const OverlayStyle& style, const std::string& title, double width) {
+  const float fitting =
+      style.title *
+      static_cast<float>(width / fonts.TextWidth(FontFace::kBold, style.title, title));
+  // In quarters of a pixel, and a little less than what fits: widths do not grow evenly with sizes.
+  return std::clamp(std::floor(3.9F * fitting) / 4.0F, style.text, style.title);
+}
+
 std::vector<CardLine> LayOutLines(FontSet& fonts, const OverlayStyle& style,
                                   const RenderCaption& caption, double width) {
   std::vector<CardLine> lines;
   if (!caption.title.empty()) {
-    for (const std::string& text :
-         WrapText(fonts, FontFace::kBold, style.title, caption.title, width)) {
-      lines.push_back({FontFace::kBold, style.title, text, "", false, true});
+    const float size = fonts.TextWidth(FontFace::kBold, style.title, caption.title) <= width
+                           ? style.title
+                           : TitleSize(fonts, style, caption.title, width);
+    for (const std::string& text : WrapText(fonts, FontFace::kBold, size, caption.title, width)) {
+      lines.push_back({FontFace::kBold, size, text, "", false, true});
     }
   }
   for (const std::string& line : caption.lines) {

@@ -88,7 +88,11 @@ std::vector<std::vector<Vector2>> Outlines(const RenderScene& scene, const Camer
 class Overlay {
  public:
   Overlay(Image& image, FontSet& fonts, const RenderScene& scene, const CameraView& view)
-      : fonts_(fonts), canvas_(image, fonts), scene_(scene), view_(view), style_(image) {}
+      : fonts_(fonts),
+        canvas_(image, fonts),
+        scene_(scene),
+        view_(view),
+        style_(image, scene.font_scale) {}
 
   void Draw(double grid_spacing) {
     const RenderCaption& caption = scene_.caption;

@@ -18,11 +18,11 @@ struct OverlayStyle {
   Rgba bright = FromSrgb(0xFFFFFF), normal = FromSrgb(0xDCE2EA), muted = FromSrgb(0xA8B3C2);
   Rgba on_floor = FromSrgb(0x5A6470);  ///< of text without a panel
 
-  explicit OverlayStyle(const Image& image)
+  OverlayStyle(const Image& image, double font_scale)
       : scale(std::clamp(std::min(image.width / 1280.0, image.height / 720.0), 0.66, 6.0)) {
     // Below about ten pixels letters fill in: text shrinks more slowly than the rest.
-    const auto sized = [this](float size) {
-      const double pixels = std::max<double>(size * scale, 0.4 * size + 3.6);
+    const auto sized = [this, font_scale](float size) {
+      const double pixels = font_scale * std::max<double>(size * scale, 0.4 * size + 3.6);
       return static_cast<float>(std::round(pixels * 4.0) / 4.0);
     };
     title = sized(title);
