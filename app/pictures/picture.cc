@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/core/check.h"
 #include "app/geometry/signed_distance.h"
 #include "app/geometry/tessellate.h"
+#include "app/hand/hand_shapes.h"
 #include "app/pictures/camera.h"
 #include "app/pictures/finger_stub.h"
 #include "app/pictures/forces.h"
@@ -31,7 +33,10 @@ void Append(MatrixX3& points, const MatrixX3& more) {
 
 }  // namespace
 
-void PictureConfig::Validate() const { RenderConfig{width, height, quality}.Validate(); }
+void PictureConfig::Validate() const {
+  RenderConfig{width, height, quality}.Validate();
+  RequireWithin("", "font_scale", kFontScale, font_scale);
+}
 
 struct PictureMaker::Impl {
   Scene scene;
@@ -43,6 +48,8 @@ struct PictureMaker::Impl {
   double metres_per_newton = 0.0;
   double shrunk = 1.0;  // what arrows and points measure, of their size at full-size objects
 
+  // What a picture of the step is framed on.
+  MatrixX3 FindFocus(const StepFacts& step, const PictureOverlay& overlay) const;
   RenderCamera ChooseCamera(const PictureConfig& config, const StepFacts& step,
                             const PictureOverlay& overlay) const;
   void AddBodies(RenderScene& picture, const StepFacts& step, const PictureOverlay& overlay) const;
@@ -80,17 +87,34 @@ PictureMaker::PictureMaker(Scene loaded) : impl_(std::make_unique<Impl>()) {
 
 PictureMaker::~PictureMaker() = default;
 
-RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const StepFacts& step,
-                                              const PictureOverlay& overlay) const {
-  const auto& fixed = config.camera ? config.camera : scene.camera;
-  if (fixed) return {fixed->p_WCam, fixed->p_WTarget, fixed->fov_deg};
-  const double aspect = static_cast<double>(config.width) / config.height;
+namespace {
+
+MatrixX3 LinkOrigins(const HandFacts& hand) {
+  const auto X_WL = CalcLinkPoses(ShadowHand(), hand.configuration());
+  MatrixX3 origins(kNumHandLinks, 3);
+  for (int link = 0; link < kNumHandLinks; ++link) {
+    origins.row(link) = X_WL[link].translation().transpose();
+  }
+  return origins;
+}
+
+}  // namespace
+
+MatrixX3 PictureMaker::Impl::FindFocus(const StepFacts& step, const PictureOverlay& overlay) const {
   MatrixX3 seen_W = TransformPoints(step.object().X_WB(), meshes[0]->V);
   for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
     Append(seen_W, TransformPoints(ghost.X_WO, meshes[0]->V));
   }
   Append(seen_W, overlay.focus_W);
-  const MatrixX3 seen_U = seen_W * R_UW.transpose();
+  return seen_W;
+}
+
+RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const StepFacts& step,
+                                              const PictureOverlay& overlay) const {
+  const auto& fixed = config.camera ? config.camera : scene.camera;
+  if (fixed) return {fixed->p_WCam, fixed->p_WTarget, fixed->fov_deg};
+  const double aspect = static_cast<double>(config.width) / config.height;
+  const MatrixX3 seen_U = FindFocus(step, overlay) * R_UW.transpose();
   RenderCamera camera_U = FrameCamera(start_focus_U, view_U, aspect);
   constexpr double kBorder = 0.08;
   if (!IsInSight(camera_U, seen_U, aspect, kBorder)) {
@@ -251,8 +275,37 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
   }
   picture.up_W = impl_->up_W;
   picture.axes = config.axes;
-  picture.caption = {text.title, text.lines, text.footer, -1.0};
+  picture.font_scale = config.font_scale;
+  if (config.card) {
+    picture.caption.title = text.title;
+    picture.caption.lines = text.lines;
+  }
+  if (config.footer) picture.caption.footer = text.footer;
+  if (!config.legend) picture.legend = {};
   return picture;
+}
+
+CameraConfig PictureMaker::FrameSteps(const std::vector<const StepFacts*>& shown,
+                                      const FactsSource& steps, const PictureConfig& config,
+                                      const std::optional<Vector3>& view) const {
+  PREGRASP_CHECK(!shown.empty());
+  if (impl_->scene.camera && !view) return *impl_->scene.camera;
+  MatrixX3 focus_U = impl_->start_focus_U;
+  for (const StepFacts* step : shown) {
+    PictureOverlay overlay = Chosen(MakeOverlay(*step, steps), config);
+    // Of the hand's motion what touches: the hand comes from far off.
+    if (const auto* frame = std::get_if<FrameFacts>(&step->details)) {
+      overlay.focus_W = frame->touching.empty() ? MatrixX3(0, 3) : LinkOrigins(frame->hand);
+    }
+    // Corners of a box do: a mesh may have any number of points.
+    const MatrixX3 seen_U = impl_->FindFocus(*step, overlay) * impl_->R_UW.transpose();
+    Append(focus_U, FocusAround(seen_U, 0.0, 0.0));
+  }
+  const RenderCamera camera =
+      Rotated(FrameCamera(focus_U, view.value_or(impl_->view_U),
+                          static_cast<double>(config.width) / config.height),
+              impl_->R_UW.transpose());
+  return {camera.p_WCam, camera.p_WTarget, camera.fov_deg};
 }
 
 }  // namespace pregrasp

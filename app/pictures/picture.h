@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/core/number_range.h"
 #include "app/job/step_facts.h"
 #include "app/scene/scene.h"
 #include "render/renderer.h"
@@ -28,8 +29,15 @@ struct PictureConfig {
   bool scores = true;    ///< its colours, and the legend
   bool rollouts = true;  ///< where plans leave the object
   bool hand = true;      ///< the whole hand
+  // Words, which overlays leave alone:
+  bool card = true;         ///< title and sentences, at the upper left
+  bool legend = true;       ///< what colours mean
+  bool footer = true;       ///< how to make the picture again
+  double font_scale = 1.0;  ///< of all type, of kFontScale
 
-  /// @throws InputError for sizes outside 16 to 8192.
+  static constexpr NumberRange kFontScale{0.3, 4.0};
+
+  /// @throws InputError for sizes outside 16 to 8192, or type outside kFontScale.
   void Validate() const;
 };
 
@@ -50,6 +58,14 @@ class PictureMaker {
 
   RenderScene Compose(const StepFacts& step, const FactsSource& steps, const PictureText& text,
                       const PictureConfig& config) const;
+
+  /// One camera that shows what matters in every one of these steps: the object, where plans leave
+  /// it, the hand. The scene's own, if it has one and `view` is not given.
+  /// @param shown  at least one. @param view  towards the camera, z against gravity; unset takes
+  ///               the automatic one.
+  CameraConfig FrameSteps(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
+                          const PictureConfig& config,
+                          const std::optional<Vector3>& view = std::nullopt) const;
 
  private:
   struct Impl;

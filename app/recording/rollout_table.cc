@@ -95,8 +95,9 @@ std::vector<BodyRow> ReadBodyRows(const std::filesystem::path& file, const Scene
   std::istringstream lines(ReadFile(file));
   std::string line;
   std::getline(lines, line);
-  const std::string header = BodyHeader(scene);
-  if (line.substr(0, header.size()) != header) {
+  line += '\n';
+  const bool of_plan = line == RolloutHeader(scene);
+  if (!of_plan && line != LiftHeader(scene)) {
     throw InputError(file.string() + ":1", "", "the header of such a table of this scene",
                      OneLine(line));
   }
@@ -106,10 +107,21 @@ std::vector<BodyRow> ReadBodyRows(const std::filesystem::path& file, const Scene
   for (int number = 2; std::getline(lines, line); ++number) {
     const std::string where = fmt::format("{}:{}", file.string(), number);
     internal::CellReader cells(where, line);
-    BodyRow row{cells.NextNumber(), {}};
+    BodyRow row{cells.NextNumber(), {}, {}};
     for (std::ptrdiff_t i = 0; i < movables; ++i) {
       row.X_WB.push_back(cells.NextPose());
       for (int velocity = 0; velocity < 2; ++velocity) cells.NextVector();
+    }
+    for (int f = 0; f < (of_plan ? kNumPlanningFingers : kNumFingers); ++f) {
+      const bool on = cells.NextNumber() != 0.0;
+      BodyRow::Contact contact{static_cast<Finger>(f)};
+      contact.p_OC = cells.NextVector();
+      contact.nhat_O = cells.NextVector();
+      for (int more = 0; more < 2; ++more) cells.NextVector();  // target, force
+      if (!of_plan) {
+        for (int more = 0; more < 2; ++more) cells.NextNumber();  // stiffness, damping
+      }
+      if (on) row.contacts.push_back(contact);
     }
     rows.push_back(std::move(row));
   }

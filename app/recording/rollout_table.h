@@ -29,9 +29,15 @@ std::string LiftRow(const WorldState& state);
 struct BodyRow {
   double t = 0.0;                    ///< [s]
   std::vector<RigidTransform> X_WB;  ///< the object first, in scene order
+  /// Contacts of the fingers that are on, on the object, with its outward normal.
+  struct Contact {
+    Finger finger = Finger::kThumb;
+    Vector3 p_OC = Vector3::Zero(), nhat_O = Vector3::UnitZ();
+  };
+  std::vector<Contact> contacts;
 };
 
-/// The bodies' columns of a rollout.csv or lift.csv. @throws InputError with the file, its line and
+/// Bodies and contacts of a rollout.csv or lift.csv. @throws InputError with the file, its line and
 /// what was expected.
 std::vector<BodyRow> ReadBodyRows(const std::filesystem::path& file, const Scene& scene);
 

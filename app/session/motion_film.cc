@@ -8,7 +8,6 @@
 #include "app/geometry/tessellate.h"
 #include "app/geometry/write_gltf.h"
 #include "app/hand/hand_shapes.h"
-#include "app/recording/motion_table.h"
 #include "app/recording/rollout_table.h"
 #include "render/palette.h"
 
@@ -17,37 +16,69 @@ namespace {
 
 std::array<float, 4> ToArray(const Rgba& color) { return {color.r, color.g, color.b, color.a}; }
 
-// Where the movable bodies are at each frame.
-std::vector<std::vector<RigidTransform>> FindBodies(const LoadedRun& run,
-                                                    const std::vector<MotionRecord>& frames) {
-  std::vector<BodyRow> rows = ReadBodyRows(run.directory / "rollout.csv", run.scene);
-  for (BodyRow& row : ReadBodyRows(run.directory / "lift.csv", run.scene)) {
-    rows.push_back(std::move(row));
-  }
-  std::vector<std::vector<RigidTransform>> X_WB;
-  for (const MotionRecord& frame : frames) {
-    const auto row =
-        std::lower_bound(rows.begin(), rows.end(), frame.simulated_t - 1e-9,
-                         [](const BodyRow& at, double simulated_t) { return at.t < simulated_t; });
-    X_WB.push_back(row == rows.end() ? rows.back().X_WB : row->X_WB);
-  }
-  return X_WB;
-}
-
 }  // namespace
 
-void WriteMotionFilm(const LoadedRun& run, const std::filesystem::path& file) {
+std::vector<FilmFrame> ReadFilm(const LoadedRun& run) {
   const std::filesystem::path table = run.directory / "motion.csv";
-  const std::vector<MotionRecord> frames =
-      std::filesystem::exists(table) ? ReadMotionTable(table) : std::vector<MotionRecord>{};
+  if (!std::filesystem::exists(table)) return {};
+  std::vector<BodyRow> rows = ReadBodyRows(run.directory / "rollout.csv", run.scene);
+  const std::filesystem::path lift = run.directory / "lift.csv";
+  if (std::filesystem::exists(lift)) {
+    for (BodyRow& row : ReadBodyRows(lift, run.scene)) rows.push_back(std::move(row));
+  }
+  std::vector<FilmFrame> frames;
+  for (const MotionRecord& motion : ReadMotionTable(table)) {
+    const auto row =
+        std::lower_bound(rows.begin(), rows.end(), motion.simulated_t - 1e-9,
+                         [](const BodyRow& at, double simulated_t) { return at.t < simulated_t; });
+    frames.push_back({motion, row == rows.end() ? rows.back().X_WB : row->X_WB});
+  }
+  return frames;
+}
+
+std::vector<FilmFrame> RequireFilm(const LoadedRun& run) {
+  std::vector<FilmFrame> frames = ReadFilm(run);
   if (frames.empty()) {
     throw InputError(run.directory.string(), "", "a run that ends in a hand motion",
                      run.summary.status.value_or("one without"));
   }
+  return frames;
+}
+
+StepFacts FrameStep(const LoadedRun& run, const std::vector<FilmFrame>& film, int index) {
+  const FilmFrame& frame = film.at(static_cast<std::size_t>(index));
+  const MotionRecord& motion = frame.motion;
+  StepFacts step = run.Get(run.manifest.value("step", ""));
+  step.id = fmt::format("motion.frame.{}", index + 1);
+  step.command = {Verb::kFrame, run.manifest.value("step", ""), {{"frame", index + 1}}};
+  step.t = motion.t;
+  for (std::size_t i = 0; i < step.bodies.size(); ++i) {
+    step.bodies[i].p_WB = frame.X_WB.at(i).translation();
+    step.bodies[i].q_WB = Quaternion(frame.X_WB.at(i).linear());
+  }
+  for (FingerFacts& finger : step.fingers) finger.on = false;
+  step.contacts.clear();
+  FrameFacts facts;
+  facts.frame = index + 1;
+  facts.phase = MotionPhaseName(motion.phase);
+  facts.loosened = LooseningRungName(motion.rung);
+  facts.failed = motion.rung == LooseningRung::kFailed;
+  facts.tip_error_mm = motion.tip_error_mm;
+  facts.clearance_mm = motion.clearance_mm;
+  facts.simulated_t = motion.simulated_t;
+  facts.hand = MakeHandFacts(motion.hand);
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (motion.on[f]) facts.touching.emplace_back().finger = static_cast<Finger>(f);
+  }
+  step.details = std::move(facts);
+  return step;
+}
+
+void WriteMotionFilm(const LoadedRun& run, const std::filesystem::path& file) {
+  const std::vector<FilmFrame> frames = RequireFilm(run);
   std::vector<double> times;
   times.reserve(frames.size());
-  for (const MotionRecord& frame : frames) times.push_back(frame.t);
-  const auto X_WB = FindBodies(run, frames);
+  for (const FilmFrame& frame : frames) times.push_back(frame.motion.t);
   std::vector<AnimatedMesh> meshes;
   std::size_t movable = 0;
   for (const Body& body : run.scene.bodies) {
@@ -60,7 +91,7 @@ void WriteMotionFilm(const LoadedRun& run, const std::filesystem::path& file) {
     if (!body.movable()) {
       mesh.X_WB = {body.X_WB};
     } else {
-      for (const auto& poses : X_WB) mesh.X_WB.push_back(poses.at(movable));
+      for (const FilmFrame& frame : frames) mesh.X_WB.push_back(frame.X_WB.at(movable));
       ++movable;
     }
     meshes.push_back(std::move(mesh));
@@ -70,8 +101,8 @@ void WriteMotionFilm(const LoadedRun& run, const std::filesystem::path& file) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     meshes.push_back({fmt::format("hand.{}", i + 1), shapes[i].mesh, shapes[i].rgba, {}});
   }
-  for (const MotionRecord& frame : frames) {
-    const auto X_WL = CalcLinkPoses(ShadowHand(), frame.hand);
+  for (const FilmFrame& frame : frames) {
+    const auto X_WL = CalcLinkPoses(ShadowHand(), frame.motion.hand);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       meshes[first + i].X_WB.push_back(X_WL[shapes[i].link]);
     }

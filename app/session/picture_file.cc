@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "app/core/error.h"
 #include "app/core/json_reader.h"
+#include "app/core/json_text.h"
 #include "app/core/json_values.h"
 #include "app/pictures/words.h"
+#include "app/recording/checked_file.h"
 #include "app/recording/mrpt_scene.h"
 #include "render/palette.h"
 
@@ -125,6 +128,17 @@ Shot ShotFromJson(const nlohmann::json& value, const std::string& where) {
   return shot;
 }
 
+Shot FindShot(const std::filesystem::path& run, const std::string& step) {
+  const std::filesystem::path file = run / "pictures.jsonl";
+  if (!std::filesystem::exists(file)) return {};
+  std::istringstream lines(ReadFile(file));
+  for (std::string line; std::getline(lines, line);) {
+    const nlohmann::json value = ParseJson(line, file.string());
+    if (value.value("step", "") == step) return ShotFromJson(value, file.string());
+  }
+  return {};
+}
+
 PictureDrawer::PictureDrawer(Scene scene, PictureLabels labels)
     : scene_(std::move(scene)), labels_(std::move(labels)) {}
 
@@ -143,17 +157,31 @@ PictureText PictureDrawer::Caption(const StepFacts& step, const FactsSource& ste
   return text;
 }
 
+const PictureMaker& PictureDrawer::Maker() {
+  if (!maker_) maker_ = std::make_unique<PictureMaker>(scene_);
+  return *maker_;
+}
+
 RenderScene PictureDrawer::Compose(const StepFacts& step, const FactsSource& steps,
                                    const Shot& shot) {
-  if (!maker_) maker_ = std::make_unique<PictureMaker>(scene_);
-  return maker_->Compose(step, steps, Caption(step, steps, shot), shot.config);
+  return Maker().Compose(step, steps, Caption(step, steps, shot), shot.config);
+}
+
+Image PictureDrawer::Render(const StepFacts& step, const FactsSource& steps, const Shot& shot) {
+  const PictureConfig& config = shot.config;
+  return SharedRenderer().Render(Compose(step, steps, shot),
+                                 {config.width, config.height, config.quality});
+}
+
+CameraConfig PictureDrawer::FrameSteps(const std::vector<const StepFacts*>& shown,
+                                       const FactsSource& steps, const PictureConfig& config,
+                                       const std::optional<Vector3>& view) {
+  return Maker().FrameSteps(shown, steps, config, view);
 }
 
 void PictureDrawer::Draw(const StepFacts& step, const FactsSource& steps, const Shot& shot,
                          const std::filesystem::path& file) {
-  WritePng(SharedRenderer().Render(Compose(step, steps, shot),
-                                   {shot.config.width, shot.config.height, shot.config.quality}),
-           file);
+  WritePng(Render(step, steps, shot), file);
 }
 
 void PictureDrawer::WriteScene(const StepFacts& step, const FactsSource& steps, const Shot& shot,

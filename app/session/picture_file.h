@@ -29,6 +29,10 @@ struct Shot {
 nlohmann::ordered_json ShotToJson(const Shot& shot);
 Shot ShotFromJson(const nlohmann::json& value, const std::string& where);
 
+/// The picture that a finished run took of a step; the usual one where it took none.
+/// @throws InputError if pictures.jsonl cannot be read.
+Shot FindShot(const std::filesystem::path& run, const std::string& step);
+
 /// Shows these overlays and no others. @throws InputError naming "overlay".
 void SetOverlays(PictureConfig& config, const std::vector<std::string>& names);
 /// "draft", "normal" or "still". @throws InputError naming "quality".
@@ -52,12 +56,21 @@ class PictureDrawer {
   void Draw(const StepFacts& step, const FactsSource& steps, const Shot& shot,
             const std::filesystem::path& file);
 
+  /// The picture itself.
+  Image Render(const StepFacts& step, const FactsSource& steps, const Shot& shot);
+
+  /// PictureMaker::FrameSteps.
+  CameraConfig FrameSteps(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
+                          const PictureConfig& config,
+                          const std::optional<Vector3>& view = std::nullopt);
+
   /// Writes what the picture shows, but for its texts beside the scene, as a .3Dscene for MRPT's
   /// SceneViewer3D, which looks at it from anywhere. @throws InputError likewise.
   void WriteScene(const StepFacts& step, const FactsSource& steps, const Shot& shot,
                   const std::filesystem::path& file);
 
  private:
+  const PictureMaker& Maker();
   RenderScene Compose(const StepFacts& step, const FactsSource& steps, const Shot& shot);
   PictureText Caption(const StepFacts& step, const FactsSource& steps, const Shot& shot) const;
 

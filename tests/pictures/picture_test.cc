@@ -99,6 +99,50 @@ TEST_F(PictureMakerTest, OverlaysCanBeLeftOut) {
   EXPECT_THROW(config.Validate(), InputError);
 }
 
+TEST_F(PictureMakerTest, WordsCanBeLeftOutAndSized) {
+  PictureText text;
+  text.title = "title";
+  text.lines = {"sentence"};
+  text.footer = "footer";
+  PictureConfig config;
+  config.card = false;
+  config.font_scale = 1.5;
+  const StepFacts& step = timeline_.root().facts;
+  RenderScene scene = maker_.Compose(step, timeline_, text, config);
+  EXPECT_TRUE(scene.caption.title.empty() && scene.caption.lines.empty());
+  EXPECT_EQ(scene.caption.footer, "footer");
+  EXPECT_EQ(scene.font_scale, 1.5);
+  config.card = true;
+  config.footer = false;
+  scene = maker_.Compose(step, timeline_, text, config);
+  EXPECT_EQ(scene.caption.title, "title");
+  EXPECT_TRUE(scene.caption.footer.empty());
+  config.font_scale = 9.0;
+  EXPECT_THROW(config.Validate(), InputError);
+}
+
+TEST_F(PictureMakerTest, OneCameraHasTheObjectInSightInAllStepsThatItIsFramedFor) {
+  std::vector<StepFacts> steps;
+  for (const double x : {-0.16, 0.1, 0.7}) {
+    steps.push_back(timeline_.root().facts);
+    steps.back().bodies[0].p_WB.x() = x;
+  }
+  std::vector<const StepFacts*> shown;
+  for (const StepFacts& step : steps) shown.push_back(&step);
+  const CameraConfig camera = maker_.FrameSteps(shown, timeline_, {});
+  const CameraConfig front = maker_.FrameSteps(shown, timeline_, {}, Vector3(0.0, -1.0, 0.0));
+  EXPECT_NEAR(front.p_WCam.z(), front.p_WTarget.z(), 1e-9);
+  EXPECT_LT(front.p_WCam.y(), front.p_WTarget.y());
+  for (const StepFacts& step : steps) {
+    const double x = step.bodies[0].p_WB.x();
+    MatrixX3 ends(2, 3);
+    ends << x - 0.15, 0, 0, x + 0.15, 0, 0;
+    for (const CameraConfig& each : {camera, front}) {
+      EXPECT_TRUE(IsInSight({each.p_WCam, each.p_WTarget, each.fov_deg}, ends, 16.0 / 9.0, 0.0));
+    }
+  }
+}
+
 TEST_F(PictureMakerTest, TheAutomaticCameraHasTheObjectInSightWhereverItIs) {
   for (const double x : {-0.3, -0.16, 0.0, 0.5}) {
     StepFacts step = timeline_.root().facts;

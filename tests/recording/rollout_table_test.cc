@@ -58,7 +58,7 @@ TEST(RolloutTableTest, TheLiftsTableHasAllFiveFingersWithTheirSpringsToTheLastBi
   }
 }
 
-TEST(RolloutTableTest, BodiesAreReadBackFromBothTables) {
+TEST(RolloutTableTest, BodiesAndContactsAreReadBackFromBothTables) {
   const Scene scene = SampleScene();
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "table.csv";
   for (const bool lift : {false, true}) {
@@ -77,6 +77,16 @@ TEST(RolloutTableTest, BodiesAreReadBackFromBothTables) {
       for (std::size_t b = 0; b < state.bodies.size(); ++b) {
         EXPECT_TRUE(rows[i].X_WB[b].isApprox(state.bodies[b].X_WB(), 1e-12)) << b;
       }
+      std::size_t read = 0;
+      for (int f = 0; f < (lift ? kNumFingers : kNumPlanningFingers); ++f) {
+        if (!state.fingers[f].on) continue;
+        ASSERT_LT(read, rows[i].contacts.size());
+        const BodyRow::Contact& contact = rows[i].contacts[read++];
+        EXPECT_EQ(static_cast<int>(contact.finger), f);
+        EXPECT_EQ(contact.p_OC, state.fingers[f].p_OC);
+        EXPECT_EQ(contact.nhat_O, state.fingers[f].nhat_O);
+      }
+      EXPECT_EQ(read, rows[i].contacts.size());
     }
   }
 }
