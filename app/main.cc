@@ -84,6 +84,7 @@ int Run(int argc, char** argv) {
   AddRepl(command, action);
   AddRun(command, action);
   AddScript(command, action);
+  AddServe(command, action);
   AddShow(command, action);
   AddVerify(command, action);
   try {

@@ -19,6 +19,7 @@ void AddJobs(const Subcommand& app, Action& action);
 void AddRepl(const Subcommand& app, Action& action);
 void AddRun(const Subcommand& app, Action& action);
 void AddScript(const Subcommand& app, Action& action);
+void AddServe(const Subcommand& app, Action& action);
 void AddShow(const Subcommand& app, Action& action);
 void AddVerify(const Subcommand& app, Action& action);
 

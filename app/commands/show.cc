@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <array>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -7,9 +8,12 @@
 #include <vector>
 
 #include "app/commands/commands.h"
+#include "app/commands/progress.h"
 #include "app/core/error.h"
-#include "app/core/json_text.h"
-#include "app/recording/checked_file.h"
+#include "app/page/contact_sheet.h"
+#include "app/page/film.h"
+#include "app/page/page.h"
+#include "app/page/run_steps.h"
 #include "app/recording/loaded_run.h"
 #include "app/session/motion_film.h"
 #include "app/session/picture_file.h"
@@ -18,21 +22,24 @@ namespace pregrasp {
 namespace {
 
 struct ShowOptions {
-  std::string run, step, out, size;
+  std::string run, step, out, size, camera;
   std::vector<std::string> overlay;
-};
+  double font_scale = 0.0;  // 0: as the picture has it
+  bool no_card = false, no_legend = false, no_footer = false, no_axes = false;
 
-// The picture that the run took of the step; the usual one where it took none.
-Shot FindShot(const LoadedRun& run, const std::string& step) {
-  const std::filesystem::path file = run.directory / "pictures.jsonl";
-  if (!std::filesystem::exists(file)) return {};
-  std::istringstream lines(ReadFile(file));
-  for (std::string line; std::getline(lines, line);) {
-    const nlohmann::json value = ParseJson(line, file.string());
-    if (value.value("step", "") == step) return ShotFromJson(value, file.string());
+  // Flags about pictures that were given, for what shows no picture.
+  std::vector<const char*> PictureFlags() const {
+    std::vector<const char*> flags;
+    for (const auto& [flag, given] :
+         {std::pair("--overlay", !overlay.empty()), std::pair("--size", !size.empty()),
+          std::pair("--camera", !camera.empty()), std::pair("--font-scale", font_scale != 0.0),
+          std::pair("--no-card", no_card), std::pair("--no-legend", no_legend),
+          std::pair("--no-footer", no_footer), std::pair("--no-axes", no_axes)}) {
+      if (given) flags.push_back(flag);
+    }
+    return flags;
   }
-  return {};
-}
+};
 
 // "1280x720".
 void SetSize(const std::string& size, PictureConfig& config) {
@@ -48,31 +55,70 @@ void SetSize(const std::string& size, PictureConfig& config) {
   config.height = height;
 }
 
-// The whole hand motion, of which no step and nothing about pictures can be asked.
-int ShowMotion(const ShowOptions& options) {
-  for (const auto& [flag, given] : {std::pair("--step", !options.step.empty()),
-                                    std::pair("--overlay", !options.overlay.empty()),
-                                    std::pair("--size", !options.size.empty())}) {
-    if (given) throw InputError(flag, "", "a picture, --out FILE.png", options.out);
+// Directions to look from, a little from above.
+struct NamedView {
+  const char* name;
+  Vector3 view_W;
+};
+const std::array<NamedView, 5> kViews{{{"front", {0.0, -1.0, 0.35}},
+                                       {"back", {0.0, 1.0, 0.35}},
+                                       {"left", {-1.0, 0.0, 0.35}},
+                                       {"right", {1.0, 0.0, 0.35}},
+                                       {"top", {0.0, 0.0, 1.0}}}};
+
+// The direction that --camera names; none for "run" and none given.
+std::optional<Vector3> FindView(const std::string& name) {
+  if (name.empty() || name == "run") return std::nullopt;
+  std::string all = "run";
+  for (const NamedView& view : kViews) {
+    if (name == view.name) return view.view_W;
+    all += std::string(", ") + view.name;
   }
-  WriteMotionFilm(LoadRun(options.run), options.out);
-  return 0;
+  throw InputError("--camera", "", "one of " + all, '"' + name + '"');
 }
 
-int Show(const ShowOptions& options) {
-  if (std::filesystem::path(options.out).extension() == ".glb") return ShowMotion(options);
-  if (options.step.empty()) {
-    throw InputError("--step", "", "a step's id, as in steps.jsonl: path.1.mppi.5", "nothing");
+void ApplyOptions(const ShowOptions& options, PictureConfig& config) {
+  if (!options.overlay.empty()) SetOverlays(config, options.overlay);
+  if (!options.size.empty()) SetSize(options.size, config);
+  if (options.font_scale != 0.0) config.font_scale = options.font_scale;
+  config.card = config.card && !options.no_card;
+  config.legend = config.legend && !options.no_legend;
+  config.footer = config.footer && !options.no_footer;
+  config.axes = config.axes && !options.no_axes;
+  config.Validate();
+}
+
+// What shows a whole run has no step, and no pictures of its own: refuses flags about these.
+void RefuseFlags(const ShowOptions& options, bool pictures) {
+  if (!options.step.empty()) {
+    throw InputError("--step", "", "a picture of the step, --out FILE.png or FILE.3Dscene",
+                     options.out);
   }
+  if (pictures) return;
+  const std::vector<const char*> flags = options.PictureFlags();
+  if (!flags.empty()) {
+    throw InputError(flags.front(), "", "a picture, --out FILE.png, or a film, FILE.mp4",
+                     options.out);
+  }
+}
+
+int ShowStep(const ShowOptions& options) {
+  const std::optional<Vector3> view_W = FindView(options.camera);
   const LoadedRun run = LoadRun(options.run);
   const StepFacts& step = run.Get(options.step);
-  Shot shot = FindShot(run, options.step);
-  if (!options.overlay.empty()) SetOverlays(shot.config, options.overlay);
-  if (!options.size.empty()) SetSize(options.size, shot.config);
-  shot.config.Validate();
+  Shot shot = FindShot(run.directory, options.step);
+  ApplyOptions(options, shot.config);
   PictureDrawer drawer(run.scene,
                        {run.summary.seed, run.manifest.value("scene_file", run.scene.name),
                         run.manifest.value("command", "")});
+  if (options.camera == "run") {
+    const RunSteps steps(run);
+    std::vector<const StepFacts*> story = steps.FindStory(run.steps.size());
+    story.push_back(&step);
+    shot.config.camera = drawer.FrameSteps(story, run, shot.config);
+  } else if (view_W) {
+    shot.config.camera = drawer.FrameSteps({&step}, run, shot.config, view_W);
+  }
   if (std::filesystem::path(options.out).extension() == ".3Dscene") {
     drawer.WriteScene(step, run, shot, options.out);
   } else {
@@ -81,29 +127,87 @@ int Show(const ShowOptions& options) {
   return 0;
 }
 
+int ShowSheet(const ShowOptions& options) {
+  const std::optional<Vector3> view_W = FindView(options.camera);
+  Shot shot;
+  shot.config.width = 1920;
+  shot.config.height = 1440;
+  ApplyOptions(options, shot.config);
+  WritePng(DrawContactSheet(LoadRun(options.run), shot, view_W), options.out);
+  return 0;
+}
+
+int ShowFilm(const ShowOptions& options) {
+  RefuseFlags(options, true);
+  const std::optional<Vector3> view_W = FindView(options.camera);
+  Shot shot;
+  const bool small = std::filesystem::path(options.out).extension() == ".gif";
+  shot.config.width = small ? 480 : 960;
+  shot.config.height = small ? 270 : 540;
+  shot.config.quality = RenderQuality::kNormal;
+  if (small) shot.config.card = shot.config.footer = false;
+  ApplyOptions(options, shot.config);
+  ProgressLine line;
+  WriteFilm(LoadRun(options.run), shot, view_W, options.out,
+            [&](int done, int total) { line.Show("film", done, total); });
+  return 0;
+}
+
+int Show(const ShowOptions& options) {
+  const std::filesystem::path out = options.out;
+  const std::string kind = out.extension().string();
+  if (kind == ".glb") {
+    RefuseFlags(options, false);
+    WriteMotionFilm(LoadRun(options.run), out);
+    return 0;
+  }
+  if (kind == ".html") {
+    RefuseFlags(options, false);
+    WritePage(LoadRun(options.run), out);
+    return 0;
+  }
+  if (IsFilmFile(out)) return ShowFilm(options);
+  if (!options.step.empty()) return ShowStep(options);
+  if (kind == ".png") return ShowSheet(options);
+  throw InputError("--out", "",
+                   "FILE.png, .html, .mp4, .webm, .gif or .glb, or with --step FILE.3Dscene",
+                   '"' + options.out + '"');
+}
+
 }  // namespace
 
 void AddShow(const Subcommand& app, Action& action) {
   auto options = std::make_shared<ShowOptions>();
-  const Subcommand command =
-      app.AddCommand("show",
-                     "Draw a step of a finished run, or write its hand motion as an animation, "
-                     "without planning again");
+  const Subcommand command = app.AddCommand(
+      "show",
+      "Show a finished run without planning again: a step as a picture, or the whole run as a "
+      "page, a sheet of pictures, a film or an animation, by the name of the file");
   command.Add("RUN_DIR", options->run, "The run directory").Required();
   command.Add("--step", options->step,
               "Of a picture: the step's id, as in steps.jsonl: path.1.mppi.5");
   command
       .Add("--out", options->out,
-           "FILE.png, a picture of the step; FILE.3Dscene, the same for MRPT's SceneViewer3D; "
-           "FILE.glb, the scene and the hand's motion as "
-           "binary glTF, for modelling programs and web viewers")
+           "FILE.html, the run as a page that explains itself; FILE.png, a picture of the step, or "
+           "without --step a sheet of the run's key steps; FILE.3Dscene, the step for MRPT's "
+           "SceneViewer3D; FILE.mp4, .webm or .gif, the hand's motion as a film, by the program "
+           "ffmpeg; FILE.glb, the same as binary glTF, for modelling programs and web viewers")
       .Required();
-  command.Add("--size", options->size, "WIDTHxHEIGHT in pixels; as the run took it by default");
+  command.Add("--size", options->size,
+              "WIDTHxHEIGHT in pixels; a picture is as the run took it by default");
   command
       .Add("--overlay", options->overlay,
            "What to show: forces, cones, contacts, trace, ghost, fingers, axes, mesh, scores, "
            "rollouts, hand; as the run took it by default")
       .OneAtATime();
+  command.Add("--camera", options->camera,
+              "run (one for all key steps), front, back, left, right or top; a picture of a step "
+              "has its own by default");
+  command.Add("--font-scale", options->font_scale, "Size of all type, 1 is as usual")
+      .Within(PictureConfig::kFontScale);
+  command.AddFlag("--no-card", options->no_card, "Without title and sentences");
+  command.AddFlag("--no-legend", options->no_legend, "Without what colours mean");
+  command.AddFlag("--no-footer", options->no_footer, "Without the line at the bottom");
+  command.AddFlag("--no-axes", options->no_axes, "Without the world's axes");
   command.OnChosen([options, &action] { action = [options] { return Show(*options); }; });
 }
 

@@ -17,11 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kOrder = {
-    "app/core",     "app/scene",    "app/geometry", "app/dynamics",   "app/hand",
-    "app/networks", "app/grasp",    "app/graph",    "app/trajectory", "app/motion",
-    "app/batch",    "app/training", "app/job",      "app/recording",  "render",
-    "app/pictures", "app/session",  "app/studies",  "bindings",       "app/commands",
-    "app"};
+    "app/core",    "app/scene",     "app/geometry",   "app/dynamics", "app/hand",    "app/networks",
+    "app/grasp",   "app/graph",     "app/trajectory", "app/motion",   "app/batch",   "app/training",
+    "app/job",     "app/recording", "render",         "app/pictures", "app/session", "app/page",
+    "app/studies", "bindings",      "app/commands",   "app"};
 
 // Folders of render's and the planner's that are closed to it although they stand above it.
 const std::map<std::string, std::set<std::string>> kOnly = {
@@ -39,6 +38,8 @@ const std::vector<std::pair<std::regex, std::set<std::string>>> kOwners = {
     {std::regex("lua.*|lauxlib.*"), {"bindings"}},
     {std::regex("histedit.*"), {"bindings"}},
     {std::regex("openssl/.*"), {"app/core"}},
+    {std::regex("httplib\\.h"), {"app/page"}},
+    {std::regex("jpeglib\\.h"), {"render"}},
     {std::regex("zlib\\.h"), {"app/core", "app/recording"}},
 };
 
@@ -108,7 +109,7 @@ TEST(IncludeOrderTest, EachLibraryStaysInTheFolderThatOwnsIt) {
 TEST(IncludeOrderTest, EveryTopFolderHasAReadme) {
   for (const char* folder :
        {"app", "bindings", "lua", "scenes", "assets", "render", "tests", "app/batch", "app/job",
-        "app/recording", "app/pictures", "app/session", "app/studies"}) {
+        "app/recording", "app/pictures", "app/session", "app/page", "app/studies"}) {
     EXPECT_TRUE(fs::exists(fs::path(PREGRASP_SOURCE_DIR) / folder / "README.md")) << folder;
   }
 }

@@ -17,6 +17,7 @@
 #include "app/recording/gzip_file.h"
 #include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
+#include "render/image.h"
 #include "tests/bindings/run_program.h"
 #include "tests/commands/small_run.h"
 #include "tests/networks/random_network.h"
@@ -305,8 +306,16 @@ TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
   EXPECT_EQ(show({"--step", run.steps.back().id, "--out", "step.3Dscene"}).code, 0);
   EXPECT_NE(ReadGzipFile(folder / "step.3Dscene").find("COpenGLScene"), std::string::npos);
   EXPECT_EQ(show({"--step", "scene.start", "--out", "motion.glb"}).code, 2);
-  EXPECT_EQ(show({"--out", "step.png"}).err,
-            "--step: expected a step's id, as in steps.jsonl: path.1.mppi.5, got nothing\n");
+  EXPECT_EQ(show({"--size", "640x480", "--out", "page.html"}).err,
+            "--size: expected a picture, --out FILE.png, or a film, FILE.mp4, got page.html\n");
+  EXPECT_EQ(show({"--step", "scene.start", "--camera", "below", "--out", "step.png"}).err,
+            "--camera: expected one of run, front, back, left, right, top, got \"below\"\n");
+  EXPECT_EQ(show({"--out", "step.jpg"}).code, 2);
+  EXPECT_EQ(show({"--size", "1280x960", "--out", "sheet.png"}).code, 0);
+  EXPECT_EQ(ReadPng(folder / "sheet.png").width, 1280);
+  setenv("PATH", folder.c_str(), 1);  // where there is no ffmpeg
+  EXPECT_EQ(show({"--size", "160x90", "--out", "motion.mp4"}).code, 2);
+  EXPECT_FALSE(fs::exists(folder / "motion.mp4"));
 
   std::uintmax_t bytes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder / "out" / "ruler")) {

@@ -1,0 +1,129 @@
+#include "app/page/run_steps.h"
+
+#include <algorithm>
+
+#include "app/core/error.h"
+#include "app/pictures/overlay.h"
+
+namespace pregrasp {
+namespace {
+
+// `count` of them, evenly, the first and the last among them.
+std::vector<const StepFacts*> TakeEvenly(const std::vector<const StepFacts*>& steps,
+                                         std::size_t count) {
+  if (steps.size() <= count) return steps;
+  std::vector<const StepFacts*> some;
+  for (std::size_t i = 0; i < count; ++i) {
+    some.push_back(steps[count == 1 ? 0 : i * (steps.size() - 1) / (count - 1)]);
+  }
+  return some;
+}
+
+bool HasFailed(const StepFacts& step) {
+  if (const auto* plan = std::get_if<CertifyFacts>(&step.details)) return !plan->certified;
+  if (const auto* grasp = std::get_if<GraspFacts>(&step.details)) return !grasp->feasible;
+  if (const auto* lift = std::get_if<LiftFacts>(&step.details)) return !lift->held;
+  return false;
+}
+
+bool IsByHand(Verb verb) {
+  return verb == Verb::kTouch || verb == Verb::kLetGo || verb == Verb::kMove || verb == Verb::kWait;
+}
+
+}  // namespace
+
+RunSteps::RunSteps(const LoadedRun& run) : run_(run) {
+  if (run.steps.empty()) {
+    throw InputError(run.directory.string(), "", "a run with a step at least", "none");
+  }
+  const std::string end = run.manifest.value("step", run.steps.back().id);
+  end_ = &run.Get(end);
+  for (const StepFacts* at = end_;; at = &run.Get(at->command.node)) {
+    way_.push_back(at);
+    on_way_.insert(at->id);
+    if (at->command.node.empty()) break;
+  }
+  std::reverse(way_.begin(), way_.end());
+}
+
+const StepFacts* RunSteps::FindGrasp() const {
+  int entry = 0;
+  for (const StepFacts* step : way_) {
+    if (const auto* frame = std::get_if<FrameFacts>(&step->details)) entry = frame->grasp;
+    if (const auto* motion = std::get_if<MotionFacts>(&step->details)) entry = motion->grasp;
+  }
+  const StepFacts* chosen = nullptr;
+  for (const StepFacts* step : way_) {
+    const auto* grasp = std::get_if<GraspFacts>(&step->details);
+    if (grasp == nullptr) continue;
+    const bool better =
+        chosen == nullptr || grasp->feasible || !std::get<GraspFacts>(chosen->details).feasible;
+    if (entry > 0 ? grasp->entry == entry : better) chosen = step;
+  }
+  return chosen;
+}
+
+const StepFacts* RunSteps::FindLift() const {
+  const StepFacts* grasp = FindGrasp();
+  const StepFacts* chosen = nullptr;
+  for (const StepFacts* step : way_) {
+    const auto* lift = std::get_if<LiftFacts>(&step->details);
+    if (lift == nullptr) continue;
+    if (grasp != nullptr && lift->grasp == std::get<GraspFacts>(grasp->details).entry) return step;
+    chosen = step;
+  }
+  return chosen;
+}
+
+const StepFacts* RunSteps::FindFailure(Verb verb) const {
+  const StepFacts* first = nullptr;
+  for (const StepFacts& step : run_.steps) {
+    if (step.command.verb != verb || !HasFailed(step)) continue;
+    if (IsOnWay(step)) return &step;
+    if (first == nullptr) first = &step;
+  }
+  return first;
+}
+
+std::vector<const StepFacts*> RunSteps::FindStory(std::size_t most) const {
+  std::set<const StepFacts*> told = {end_,
+                                     FindGrasp(),
+                                     FindLift(),
+                                     FindFailure(Verb::kCertify),
+                                     FindFailure(Verb::kGrasp),
+                                     FindFailure(Verb::kLift)};
+  told.erase(nullptr);
+  std::vector<const StepFacts*> iterations, keyframes, actions;
+  for (const StepFacts& step : run_.steps) {
+    const Verb verb = step.command.verb;
+    if (verb == Verb::kVerdict || verb == Verb::kSettle) told.insert(&step);
+    if (!IsOnWay(step) || told.count(&step) > 0) continue;
+    if (IsByHand(verb)) {
+      actions.push_back(&step);
+    } else if (verb == Verb::kPath) {
+      told.insert(&step);
+    } else if (!IsKeyStep(step, run_)) {
+      continue;
+    } else if (verb == Verb::kIterate) {
+      iterations.push_back(&step);
+    } else if (verb == Verb::kKeyframe) {
+      keyframes.push_back(&step);
+    } else if (verb != Verb::kGrasp && verb != Verb::kLift) {
+      told.insert(&step);
+    }
+  }
+  constexpr std::size_t kIterations = 4, kLeast = 2;
+  iterations = TakeEvenly(iterations, kIterations);
+  told.insert(iterations.begin(), iterations.end());
+  for (const auto& many : {keyframes, actions}) {
+    const std::size_t room = most > told.size() ? most - told.size() : 0;
+    const std::vector<const StepFacts*> some = TakeEvenly(many, std::max(room, kLeast));
+    told.insert(some.begin(), some.end());
+  }
+  std::vector<const StepFacts*> story(told.begin(), told.end());
+  std::sort(story.begin(), story.end(),
+            [this](const StepFacts* a, const StepFacts* b) { return NumberOf(*a) < NumberOf(*b); });
+  return TakeEvenly(story, most);
+}
+
+}  // namespace pregrasp

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/recording/loaded_run.h"
+
+namespace pregrasp {
+
+/// Which steps of a run matter, and how they hang together.
+class RunSteps {
+ public:
+  explicit RunSteps(const LoadedRun& run);
+
+  /// The step that the run's summary is of.
+  const StepFacts& end() const { return *end_; }
+  /// Those that led to it, the start first.
+  const std::vector<const StepFacts*>& way() const { return way_; }
+  bool IsOnWay(const StepFacts& step) const { return on_way_.count(step.id) > 0; }
+  int NumberOf(const StepFacts& step) const { return run_.number_of.at(step.id); }
+
+  /// The grasp on the way that a motion ends in; without a motion the last feasible one, else the
+  /// last; null for none.
+  const StepFacts* FindGrasp() const;
+  /// The lift of that grasp on the way, else the last; null for none.
+  const StepFacts* FindLift() const;
+
+  /// What the run is told by, in its order: verdicts on the start; key steps (IsKeyStep) on the
+  /// way, with that grasp and lift, and where the way ends; and, from beside the way, the first
+  /// plan, the first grasp and the first lift that failed, where none on the way did. At most
+  /// `most`: of iterations and of keyframes those are taken that lie evenly.
+  std::vector<const StepFacts*> FindStory(std::size_t most) const;
+
+ private:
+  // On the way if there is one, else the first.
+  const StepFacts* FindFailure(Verb verb) const;
+
+  const LoadedRun& run_;
+  const StepFacts* end_ = nullptr;
+  std::vector<const StepFacts*> way_;
+  std::set<std::string> on_way_;
+};
+
+}  // namespace pregrasp
