@@ -24,7 +24,8 @@ const Schema kVerdict{"Verdict", {"verdict", "mu", "mu_star", "thin", "sentence"
 const Schema kSimulateOptions{"SimulateOptions", {"trace"}};
 const Schema kRecordOptions{"RecordOptions", {"dir", "pictures"}};
 const Schema kShotOptions{"ShotOptions",
-                          {"caption", "camera", "size", "quality", "overlay", "file"}};
+                          {"caption", "camera", "size", "quality", "overlay", "file", "card",
+                           "legend", "footer", "font_scale"}};
 const Schema kBody{"Body", {"name", "movable", "p", "q", "rpy_deg", "v", "w"}};
 const Schema kCloudOptions{"CloudOptions", {"points"}};
 const Schema kMeshOptions{"MeshOptions", {"triangles"}};
@@ -65,6 +66,11 @@ ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::stri
   if (const auto overlays = fields.Find<std::vector<std::string>>("overlay")) {
     SetOverlays(picture, *overlays);
   }
+  picture.card = fields.Optional<bool>("card", true);
+  picture.legend = fields.Optional<bool>("legend", true);
+  picture.footer = fields.Optional<bool>("footer", true);
+  picture.font_scale = fields.Optional<double>("font_scale", 1.0);
+  RequireWithin("", "font_scale", PictureConfig::kFontScale, picture.font_scale);
   return options;
 }
 

@@ -33,6 +33,33 @@ void Append(MatrixX3& points, const MatrixX3& more) {
 
 }  // namespace
 
+double ForceScale::Length(double newtons) const {
+  constexpr double kShortest = 0.02, kLongest = 0.10;  // [m]
+  return std::clamp(metres_per_newton * newtons, kShortest * shrunk, kLongest * shrunk);
+}
+
+namespace {
+
+ForceScale MakeForceScale(const Scene& scene, const TriangleMesh& object_W) {
+  const Vector3 size = object_W.V.colwise().maxCoeff() - object_W.V.colwise().minCoeff();
+  ForceScale scale;
+  scale.shrunk = std::min(1.0, size.maxCoeff() / kFullSize);
+  // The forces of a push are a few times the weight, and end at the cap.
+  constexpr double kLongArrow = 0.07;  // [m]
+  const double large =
+      std::min(scene.fingertips.max_force, 2.5 * std::max(scene.object_weight(), 1e-3));
+  scale.metres_per_newton = kLongArrow * scale.shrunk / large;
+  return scale;
+}
+
+}  // namespace
+
+ForceScale CalcForceScale(const Scene& scene) {
+  TriangleMesh object_W = Tessellate(scene.object().shape);
+  object_W.V = TransformPoints(scene.object().X_WB, object_W.V);
+  return MakeForceScale(scene, object_W);
+}
+
 void PictureConfig::Validate() const {
   RenderConfig{width, height, quality}.Validate();
   RequireWithin("", "font_scale", kFontScale, font_scale);
@@ -45,8 +72,7 @@ struct PictureMaker::Impl {
   Matrix3 R_UW;                                             // to a frame U in which that is +z
   Vector3 view_U;          // towards the viewer, in automatic pictures
   MatrixX3 start_focus_U;  // what they show at least: one camera for a strip, while that does
-  double metres_per_newton = 0.0;
-  double shrunk = 1.0;  // what arrows and points measure, of their size at full-size objects
+  ForceScale scale;
 
   // What a picture of the step is framed on.
   MatrixX3 FindFocus(const StepFacts& step, const PictureOverlay& overlay) const;
@@ -74,15 +100,9 @@ PictureMaker::PictureMaker(Scene loaded) : impl_(std::make_unique<Impl>()) {
   impl_->R_UW = UprightRotation(impl_->up_W);
   impl_->view_U =
       impl_->R_UW * ChooseViewDirection(object_W, EnvironmentDistance(scene), impl_->up_W);
-  const Vector3 size = object_W.V.colwise().maxCoeff() - object_W.V.colwise().minCoeff();
-  impl_->shrunk = std::min(1.0, size.maxCoeff() / kFullSize);
-  impl_->start_focus_U =
-      FocusAround(object_W.V * impl_->R_UW.transpose(), kFocusShare, kHeadroom * impl_->shrunk);
-  // The forces of a push are a few times the weight, and end at the cap.
-  constexpr double kLongArrow = 0.07;  // [m]
-  const double large =
-      std::min(scene.fingertips.max_force, 2.5 * std::max(scene.object_weight(), 1e-3));
-  impl_->metres_per_newton = kLongArrow * impl_->shrunk / large;
+  impl_->scale = MakeForceScale(scene, object_W);
+  impl_->start_focus_U = FocusAround(object_W.V * impl_->R_UW.transpose(), kFocusShare,
+                                     kHeadroom * impl_->scale.shrunk);
 }
 
 PictureMaker::~PictureMaker() = default;
@@ -174,14 +194,11 @@ void PictureMaker::Impl::AddOverlay(RenderScene& picture, const PictureOverlay& 
 void PictureMaker::Impl::AddArrow(RenderScene& picture, const Vector3& p_W, bool ends_there,
                                   const Vector3& f_W, const Rgba& color,
                                   const std::string& name) const {
-  constexpr double kShortest = 0.02, kLongest = 0.10;  // [m]
   const double force = f_W.norm();
   if (force < 1e-3) return;
-  const double length =
-      std::clamp(metres_per_newton * force, kShortest * shrunk, kLongest * shrunk);
-  const Vector3 v_W = f_W * (length / force);
+  const Vector3 v_W = f_W * (scale.Length(force) / force);
   const Vector3 tail_W = ends_there ? Vector3(p_W - v_W) : p_W;
-  picture.arrows.push_back({tail_W, v_W, static_cast<float>(0.0016 * shrunk), color});
+  picture.arrows.push_back({tail_W, v_W, static_cast<float>(0.0016 * scale.shrunk), color});
   picture.labels.push_back({tail_W, fmt::format("{} {:.2f} N", name, force), color});
 }
 
@@ -227,16 +244,16 @@ PictureOverlay Chosen(PictureOverlay overlay, const PictureConfig& config) {
 // At each contact point the normal and the force: where the object takes part, into it and on it,
 // else into and on the second body. Normals have one length, forces the pictures' scale.
 void AddContactArrows(RenderScene& picture, const std::vector<ContactFacts>& contacts,
-                      double metres_per_newton, double shrunk) {
-  const double normal_length = 0.012 * shrunk;  // [m]
-  const auto thin = static_cast<float>(0.0005 * shrunk),
-             thick = static_cast<float>(0.0012 * shrunk);
+                      const ForceScale& scale) {
+  const double normal_length = 0.012 * scale.shrunk;  // [m]
+  const auto thin = static_cast<float>(0.0005 * scale.shrunk),
+             thick = static_cast<float>(0.0012 * scale.shrunk);
   for (const ContactFacts& contact : contacts) {
     const double sign = contact.a == 0 ? -1.0 : 1.0;
     picture.arrows.push_back(
         {contact.p_W, sign * normal_length * contact.nhat_W, thin, NeutralColor()});
-    const Vector3 v_W = sign * metres_per_newton * contact.f_W;
-    if (v_W.norm() > 1e-3 * shrunk) {
+    const Vector3 v_W = sign * scale.metres_per_newton * contact.f_W;
+    if (v_W.norm() > 1e-3 * scale.shrunk) {
       picture.arrows.push_back({contact.p_W, v_W, thick, GoodColor()});
     }
   }
@@ -263,11 +280,10 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
     for (const ContactFacts& contact : step.contacts) {
       if (contact.a != 0 || contact.f_W.norm() < 1e-3) continue;
       picture.points.push_back(
-          {contact.p_W, static_cast<float>(0.0022 * impl_->shrunk), NeutralColor()});
+          {contact.p_W, static_cast<float>(0.0022 * impl_->scale.shrunk), NeutralColor()});
     }
   }
-  if (config.trace)
-    AddContactArrows(picture, step.contacts, impl_->metres_per_newton, impl_->shrunk);
+  if (config.trace) AddContactArrows(picture, step.contacts, impl_->scale);
   if (config.forces && overlay.forces) {
     const MassProperties& mass = *scene.object().mass_properties;
     impl_->AddArrow(picture, step.object().X_WB() * mass.p_BoBcm, false, mass.mass * scene.gravity,

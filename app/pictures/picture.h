@@ -41,6 +41,17 @@ struct PictureConfig {
   void Validate() const;
 };
 
+/// How long a force's arrow is in pictures of a scene.
+struct ForceScale {
+  double metres_per_newton = 0.0;
+  double shrunk = 1.0;  ///< what arrows and points measure, of their size at full-size objects
+
+  /// Within what can be seen and what does not hide the rest [m].
+  double Length(double newtons) const;
+};
+/// @param scene  loaded.
+ForceScale CalcForceScale(const Scene& scene);
+
 /// The words of a picture.
 struct PictureText {
   std::string title;

@@ -117,7 +117,8 @@ std::vector<BodyRow> ReadBodyRows(const std::filesystem::path& file, const Scene
       BodyRow::Contact contact{static_cast<Finger>(f)};
       contact.p_OC = cells.NextVector();
       contact.nhat_O = cells.NextVector();
-      for (int more = 0; more < 2; ++more) cells.NextVector();  // target, force
+      cells.NextVector();  // target
+      contact.f_W = cells.NextVector();
       if (!of_plan) {
         for (int more = 0; more < 2; ++more) cells.NextNumber();  // stiffness, damping
       }

@@ -29,10 +29,11 @@ std::string LiftRow(const WorldState& state);
 struct BodyRow {
   double t = 0.0;                    ///< [s]
   std::vector<RigidTransform> X_WB;  ///< the object first, in scene order
-  /// Contacts of the fingers that are on, on the object, with its outward normal.
+  /// Contacts of the fingers that are on, with the object's outward normal and the force on it.
   struct Contact {
     Finger finger = Finger::kThumb;
     Vector3 p_OC = Vector3::Zero(), nhat_O = Vector3::UnitZ();
+    Vector3 f_W = Vector3::Zero();  ///< [N]
   };
   std::vector<Contact> contacts;
 };

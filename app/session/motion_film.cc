@@ -8,7 +8,6 @@
 #include "app/geometry/tessellate.h"
 #include "app/geometry/write_gltf.h"
 #include "app/hand/hand_shapes.h"
-#include "app/recording/rollout_table.h"
 #include "render/palette.h"
 
 namespace pregrasp {
@@ -31,7 +30,11 @@ std::vector<FilmFrame> ReadFilm(const LoadedRun& run) {
     const auto row =
         std::lower_bound(rows.begin(), rows.end(), motion.simulated_t - 1e-9,
                          [](const BodyRow& at, double simulated_t) { return at.t < simulated_t; });
-    frames.push_back({motion, row == rows.end() ? rows.back().X_WB : row->X_WB});
+    const BodyRow& shown = row == rows.end() ? rows.back() : *row;
+    frames.push_back({motion, shown.X_WB, {}});
+    for (const BodyRow::Contact& contact : shown.contacts) {
+      if (motion.on[static_cast<int>(contact.finger)]) frames.back().contacts.push_back(contact);
+    }
   }
   return frames;
 }

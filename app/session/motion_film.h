@@ -5,6 +5,7 @@
 
 #include "app/recording/loaded_run.h"
 #include "app/recording/motion_table.h"
+#include "app/recording/rollout_table.h"
 
 namespace pregrasp {
 
@@ -13,6 +14,7 @@ namespace pregrasp {
 struct FilmFrame {
   MotionRecord motion;
   std::vector<RigidTransform> X_WB;
+  std::vector<BodyRow::Contact> contacts;  ///< of the fingers that press
 };
 /// All of them; none for a run without motion.csv. @throws InputError for tables that cannot be
 /// read.

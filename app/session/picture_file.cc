@@ -41,6 +41,11 @@ constexpr std::array<OverlayFlag, 11> kOverlays{{{"forces", &PictureConfig::forc
                                                  {"rollouts", &PictureConfig::rollouts},
                                                  {"hand", &PictureConfig::hand}}};
 
+// Its words, which are there unless a picture is to be without.
+constexpr std::array<OverlayFlag, 3> kWords{{{"card", &PictureConfig::card},
+                                             {"legend", &PictureConfig::legend},
+                                             {"footer", &PictureConfig::footer}}};
+
 const char* QualityName(RenderQuality quality) {
   switch (quality) {
     case RenderQuality::kDraft:
@@ -100,12 +105,17 @@ nlohmann::ordered_json ShotToJson(const Shot& shot) {
               {"p_WTarget", ToJson(shot.config.camera->p_WTarget)},
               {"fov_deg", shot.config.camera->fov_deg}};
   }
-  return {{"title", shot.title},
-          {"caption", shot.caption},
-          {"size", {shot.config.width, shot.config.height}},
-          {"quality", QualityName(shot.config.quality)},
-          {"overlay", std::move(overlay)},
-          {"camera", std::move(camera)}};
+  nlohmann::ordered_json json = {{"title", shot.title},
+                                 {"caption", shot.caption},
+                                 {"size", {shot.config.width, shot.config.height}},
+                                 {"quality", QualityName(shot.config.quality)},
+                                 {"overlay", std::move(overlay)},
+                                 {"camera", std::move(camera)}};
+  for (const OverlayFlag& word : kWords) {
+    if (!(shot.config.*word.flag)) json["without"].push_back(word.name);
+  }
+  if (shot.config.font_scale != 1.0) json["font_scale"] = shot.config.font_scale;
+  return json;
 }
 
 Shot ShotFromJson(const nlohmann::json& value, const std::string& where) {
@@ -121,6 +131,15 @@ Shot ShotFromJson(const nlohmann::json& value, const std::string& where) {
     overlay.push_back(reader["overlay"][i].Text());
   }
   SetOverlays(shot.config, overlay);
+  if (value.contains("without")) {
+    for (std::size_t i = 0; i < reader["without"].size(); ++i) {
+      const std::string name = reader["without"][i].Text();
+      for (const OverlayFlag& word : kWords) {
+        if (name == word.name) shot.config.*word.flag = false;
+      }
+    }
+  }
+  if (value.contains("font_scale")) shot.config.font_scale = reader["font_scale"].Number();
   if (const JsonReader camera = reader["camera"]; !camera.is_null()) {
     shot.config.camera = CameraConfig{camera["p_WCam"].Vec3(), camera["p_WTarget"].Vec3(),
                                       camera["fov_deg"].Number()};

@@ -326,6 +326,10 @@ function Session:shot(options) end
 ---@field size? integer[] {1280, 720} pixels
 ---@field quality? "draft"|"normal"|"still" "still"
 ---@field overlay? Overlay[] all of them
+---@field card? boolean true: title and sentences, at the upper left
+---@field legend? boolean true: what colours mean
+---@field footer? boolean true: the line at the bottom
+---@field font_scale? number 1: size of all type, 0.3 to 4
 ---@field file? string "out/..": drawn now, outside of the run directory
 
 ---Writes the run directory with all steps so far: at `dir`, or the one that is recorded to.

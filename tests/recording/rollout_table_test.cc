@@ -85,6 +85,7 @@ TEST(RolloutTableTest, BodiesAndContactsAreReadBackFromBothTables) {
         EXPECT_EQ(static_cast<int>(contact.finger), f);
         EXPECT_EQ(contact.p_OC, state.fingers[f].p_OC);
         EXPECT_EQ(contact.nhat_O, state.fingers[f].nhat_O);
+        EXPECT_EQ(contact.f_W, state.fingers[f].f_W);
       }
       EXPECT_EQ(read, rows[i].contacts.size());
     }

@@ -266,5 +266,20 @@ TEST_F(SessionTest, WhatARecordingFailedForIsInItsManifest) {
   EXPECT_EQ(run.manifest["error"], "a.lua:3: no");
 }
 
+TEST_F(SessionTest, APicturesOptionsAreReadBackAsTheyWere) {
+  Shot shot = Draft("caption");
+  shot.title = "title";
+  shot.config.card = shot.config.footer = shot.config.axes = false;
+  shot.config.font_scale = 1.5;
+  shot.config.camera = CameraConfig{{1, 2, 3}, {0, 0, 0.5}, 40.0};
+  const nlohmann::json json = ShotToJson(shot);
+  const Shot read = ShotFromJson(json, "pictures.jsonl");
+  EXPECT_EQ(nlohmann::json(ShotToJson(read)), json);
+  EXPECT_FALSE(read.config.card || read.config.footer || read.config.axes);
+  EXPECT_TRUE(read.config.legend && read.config.forces);
+  EXPECT_EQ(read.config.font_scale, 1.5);
+  EXPECT_FALSE(ShotToJson(Draft("")).contains("without"));  // as runs had it before
+}
+
 }  // namespace
 }  // namespace pregrasp
