@@ -153,6 +153,11 @@ void ServePages(const fs::path& folder, int port,
   httplib::Server server;
   server.new_task_queue = [] { return new OneAfterAnother; };
   server.set_keep_alive_max_count(1);
+  // A port that another program has is taken: the library would share it.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  });
   server.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
     if (IsLocalHost(request.get_header_value("Host"))) {
       return httplib::Server::HandlerResponse::Unhandled;

@@ -13,7 +13,7 @@
 #include "app/geometry/tessellate.h"
 #include "app/hand/hand_shapes.h"
 #include "app/page/html_text.h"
-#include "app/recording/rollout_table.h"
+#include "app/pictures/picture.h"
 #include "app/session/motion_film.h"
 #include "render/canvas.h"
 #include "render/palette.h"
@@ -94,8 +94,22 @@ std::string LinkPoses(const HandConfiguration& hand) {
   return packed.text();
 }
 
-Json TipJson(Finger finger, const Vector3& center_W) {
-  return {static_cast<int>(finger), Short(center_W.x()), Short(center_W.y()), Short(center_W.z())};
+// A finger: its number, its contact, the object's outward normal there, the force on it [N].
+Json TipJson(Finger finger, const Vector3& p_W, const Vector3& nhat_W, const Vector3& f_W) {
+  Json json = {static_cast<int>(finger)};
+  for (const Vector3& v : {p_W, nhat_W, f_W}) {
+    for (int axis = 0; axis < 3; ++axis) json.push_back(Short(v[axis]));
+  }
+  return json;
+}
+
+Json TipsJson(const std::vector<BodyRow::Contact>& contacts, const RigidTransform& X_WO) {
+  Json json = Json::array();
+  for (const BodyRow::Contact& contact : contacts) {
+    json.push_back(
+        TipJson(contact.finger, X_WO * contact.p_OC, X_WO.linear() * contact.nhat_O, contact.f_W));
+  }
+  return json;
 }
 
 class Space {
@@ -114,13 +128,10 @@ class Space {
                          {"radius", FingertipRadius(finger)}});
     }
     for (const StepFacts* step : steps) poses.push_back(step == nullptr ? Json() : StepJson(*step));
-    return {{"meshes", std::move(meshes_)},
-            {"bodies", std::move(bodies_)},
-            {"hand", std::move(hand_)},
-            {"links", kNumHandLinks},
-            {"fingers", std::move(fingers)},
-            {"steps", std::move(poses)},
-            {"film", FilmJson()}};
+    return {{"meshes", std::move(meshes_)}, {"bodies", std::move(bodies_)},
+            {"hand", std::move(hand_)},     {"links", kNumHandLinks},
+            {"force", ForceJson()},         {"fingers", std::move(fingers)},
+            {"steps", std::move(poses)},    {"film", FilmJson()}};
   }
 
  private:
@@ -157,6 +168,15 @@ class Space {
         {{"mesh", mesh}, {"link", shape.link}, {"color", CssColor({r, g, b, a})}, {"tip", tip}});
   }
 
+  // Arrows are as long as the pictures'.
+  Json ForceJson() const {
+    const ForceScale scale = CalcForceScale(run_.scene);
+    return {{"per_newton", scale.metres_per_newton},
+            {"shortest", scale.Length(0.0)},
+            {"longest", scale.Length(1e9)},
+            {"radius", 0.0045 * scale.shrunk}};
+  }
+
   Json StepJson(const StepFacts& step) const {
     Json bodies = Json::array(), fingers = Json::array();
     for (const BodyFacts& body : step.bodies) bodies.push_back(PoseJson(body.X_WB()));
@@ -177,13 +197,11 @@ class Space {
     if (hand != nullptr && hand->joints.size() == kNumHandJoints) {
       json["hand"] = LinkPoses(hand->configuration());
       json["on"] = touching;
-      return json;
     }
     for (const FingerFacts& finger : step.fingers) {
       if (!finger.on) continue;
-      const Vector3 nhat_W = step.object().q_WB * finger.nhat_O;
-      const Vector3 center_W = finger.p_WF + FingertipRadius(finger.finger) * nhat_W;
-      fingers.push_back(TipJson(finger.finger, center_W));
+      fingers.push_back(
+          TipJson(finger.finger, finger.p_WF, step.object().q_WB * finger.nhat_O, finger.f_W));
     }
     if (!fingers.empty()) json["fingers"] = std::move(fingers);
     return json;
@@ -193,7 +211,7 @@ class Space {
   Json FilmJson() const {
     std::vector<double> times;
     Packed bodies, hand;
-    Json phases = Json::array(), on = Json::array();
+    Json phases = Json::array(), on = Json::array(), fingers = Json::array();
     const std::vector<FilmFrame> film = ReadFilm(run_);
     if (!film.empty()) {
       const std::size_t stride = film.size() / kMostFrames + 1;
@@ -207,19 +225,17 @@ class Space {
         int bits = 0;
         for (int f = 0; f < kNumFingers; ++f) bits |= film[i].motion.on[f] ? 1 << f : 0;
         on.push_back(bits);
+        fingers.push_back(TipsJson(film[i].contacts, film[i].X_WB[0]));
       }
-      return {{"t", times},
-              {"bodies", bodies.text()},
-              {"hand", hand.text()},
-              {"phase", phases},
-              {"on", on}};
+      return {
+          {"t", times}, {"bodies", bodies.text()},      {"hand", hand.text()}, {"phase", phases},
+          {"on", on},   {"fingers", std::move(fingers)}};
     }
     const std::filesystem::path table = run_.directory / "rollout.csv";
     if (!std::filesystem::exists(table)) return nullptr;
     const std::vector<BodyRow> rows = ReadBodyRows(table, run_.scene);
     if (rows.size() < 2) return nullptr;
     constexpr double kPerSecond = 30.0;
-    Json fingers = Json::array();
     const double seconds = rows.back().t - rows.front().t;
     const double count = std::clamp(std::ceil(seconds * kPerSecond), 1.0, kMostFrames * 1.0);
     for (int i = 0; i <= static_cast<int>(count); ++i) {
@@ -227,12 +243,7 @@ class Space {
           static_cast<std::size_t>(std::lround(i / count * static_cast<double>(rows.size() - 1)));
       times.push_back(Short(rows[row].t));
       for (const RigidTransform& X_WB : rows[row].X_WB) bodies.AddPose(X_WB);
-      Json at = Json::array();
-      for (const BodyRow::Contact& contact : rows[row].contacts) {
-        const Vector3 tip_O = contact.p_OC + FingertipRadius(contact.finger) * contact.nhat_O;
-        at.push_back(TipJson(contact.finger, rows[row].X_WB[0] * tip_O));
-      }
-      fingers.push_back(std::move(at));
+      fingers.push_back(TipsJson(rows[row].contacts, rows[row].X_WB[0]));
     }
     return {{"t", times}, {"bodies", bodies.text()}, {"fingers", std::move(fingers)}};
   }

@@ -313,8 +313,10 @@ TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
   EXPECT_EQ(show({"--out", "step.jpg"}).code, 2);
   EXPECT_EQ(show({"--size", "1280x960", "--out", "sheet.png"}).code, 0);
   EXPECT_EQ(ReadPng(folder / "sheet.png").width, 1280);
+  const std::string path = std::getenv("PATH");
   setenv("PATH", folder.c_str(), 1);  // where there is no ffmpeg
   EXPECT_EQ(show({"--size", "160x90", "--out", "motion.mp4"}).code, 2);
+  setenv("PATH", path.c_str(), 1);
   EXPECT_FALSE(fs::exists(folder / "motion.mp4"));
 
   std::uintmax_t bytes = 0;

@@ -28,7 +28,7 @@ page.graph = (() => {
     c.clearRect(0, 0, size, size);
     for (let id = 0; id < n * n; ++id) {
       const x = id % n * cell, y = Math.floor(id / n) * cell;
-      c.globalAlpha = kept(id) ? 1 : 0.22;
+      c.globalAlpha = graph.verdict[id] === 'p' ? 0.22 : 1;
       c.fillStyle = ramp(graph.s_c[id] / highest);
       c.fillRect(x, y, cell - gap, cell - gap);
       if (graph.verdict[id] === 'n' || graph.verdict[id] === 'b') {
@@ -72,25 +72,26 @@ page.graph = (() => {
   // The mesh, painted from the back to the front.
   const points = Array.from({ length: graph.V.length / 3 }, (_, i) => graph.V.slice(3 * i, 3 * i + 3));
   const low = [0, 1, 2].map((k) => Math.min(...points.map((p) => p[k]))), high = [0, 1, 2].map((k) => Math.max(...points.map((p) => p[k])));
-  const size = Math.hypot(...high.map((x, k) => x - low[k]));
   const best = Array(n).fill(-1);
   graph.s_c.forEach((score, id) => {
     for (const t of [Math.floor(id / n), id % n]) best[t] = Math.max(best[t], score);
   });
   const start = space.cameras.story, back = start.p_WCam.map((x, i) => x - start.p_WTarget[i]);
   const table = new Turntable(mesh, {
-    azimuth: Math.atan2(back[1], back[0]), elevation: Math.asin(back[2] / Math.hypot(...back)), distance: 1.02 * size,
+    azimuth: Math.atan2(back[1], back[0]), elevation: Math.asin(back[2] / Math.hypot(...back)), distance: 1,
     target: low.map((x, k) => 0.5 * (x + high[k])),
   }, () => drawMesh());
+  const project = (axis, p) => axis.reduce((sum, x, k) => sum + x * (p[k] - table.target[k]), 0);
+  // How far the mesh reaches to the side and up as it is seen first: that fills the canvas.
+  const reach = [table.axes().right, table.axes().up].map((axis) => Math.max(...points.map((p) => Math.abs(project(axis, p)))));
   const drawMesh = () => {
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     const width = Math.round(mesh.clientWidth * ratio), height = Math.round(mesh.clientHeight * ratio);
     if (!width) return;
     if (mesh.width !== width || mesh.height !== height) Object.assign(mesh, { width, height });
     const c = mesh.getContext('2d'), { right, up, back } = table.axes();
-    const scale = Math.min(width, 1.3 * height) / table.distance;
-    const dot = (a, p) => a[0] * (p[0] - table.target[0]) + a[1] * (p[1] - table.target[1]) + a[2] * (p[2] - table.target[2]);
-    const seen = points.map((p) => [width / 2 + scale * dot(right, p), height / 2 - scale * dot(up, p), dot(back, p)]);
+    const scale = 0.44 * Math.min(width / reach[0], height / reach[1]) / table.distance;
+    const seen = points.map((p) => [width / 2 + scale * project(right, p), height / 2 - scale * project(up, p), project(back, p)]);
     const faces = Array.from({ length: n }, (_, t) => {
       const corners = [0, 1, 2].map((k) => seen[graph.F[3 * t + k]]);
       const [a, b, d] = corners;
@@ -157,13 +158,13 @@ page.graph = (() => {
     words.replaceChildren();
     const thumb = Math.floor(id / n), index = id % n;
     page.add(words, 'h3', { style: 'margin-top: .4rem' }, `Node ${id}: thumb on ${thumb}, index on ${index}`);
-    page.add(words, 'p', { class: `verdict ${kept(id) ? 'kept' : 'pruned'}` }, names[graph.verdict[id]]);
+    page.add(words, 'p', { class: `verdict ${kept(id) ? 'kept' : graph.verdict[id] === 'p' ? 'pruned' : ''}` }, names[graph.verdict[id]]);
     const rows = page.add(page.add(words, 'table'), 'tbody');
     const row = (cells, name = 'td') => {
       const line = page.add(rows, 'tr');
       cells.forEach((text) => page.add(line, name, {}, text));
     };
-    row(['', 'score', 'rank', 'threshold', 'stays'], 'th');
+    row(['', 'score', 'rank', 'threshold', `among the best ${graph.kept_each}`], 'th');
     for (const [name, score, rank, threshold] of [['here', graph.s_c[id], graph.rank_c[id], graph.threshold_c], ['alone', graph.s_n[id], graph.rank_n[id], graph.threshold_n]]) {
       row([name, score.toFixed(3), `${rank} of ${n * n}`, threshold.toFixed(3), rank <= graph.kept_each ? 'yes' : 'no']);
     }

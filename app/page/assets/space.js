@@ -52,6 +52,36 @@ function ballMesh() {
   return new Float32Array(out);
 }
 
+// Along z from 0 to 1: a shaft and a head, as wide as 1 to all sides.
+function arrowMesh() {
+  const out = [], sides = 16;
+  const ring = (j, r, z) => [r * Math.cos(2 * Math.PI * j / sides), r * Math.sin(2 * Math.PI * j / sides), z];
+  const band = (r0, z0, r1, z1, up) => {
+    for (let j = 0; j < sides; ++j) {
+      const quad = [ring(j, r0, z0), ring(j + 1, r0, z0), ring(j + 1, r1, z1), ring(j, r1, z1)];
+      for (const k of [0, 1, 2, 0, 2, 3]) {
+        const n = [quad[k][0], quad[k][1], 0], length = Math.hypot(n[0], n[1]) || 1;
+        out.push(...quad[k], n[0] / length, n[1] / length, up);
+      }
+    }
+  };
+  band(0.36, 0, 0.36, 0.72, 0);
+  band(1, 0.72, 0.001, 1, 0.6);
+  return new Float32Array(out);
+}
+
+// Column-major: an arrow that ends at p, along the force f.
+function arrowMatrix(p, f) {
+  const newtons = Math.hypot(...f), { per_newton, shortest, longest, radius } = space.force;
+  const length = Math.max(shortest, Math.min(longest, per_newton * newtons));
+  const z = f.map((x) => x / newtons), side = Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const x = cross(side, z), scale = Math.hypot(...x), u = x.map((c) => c / scale), v = cross(z, u);
+  return new Float32Array([
+    ...u.map((c) => radius * c), 0, ...v.map((c) => radius * c), 0, ...z.map((c) => length * c), 0,
+    ...p.map((c, i) => c - length * z[i]), 1]);
+}
+
 // Column-major: the pose x, y, z, w, i, j, k at pose[at], scaled.
 function poseMatrix(pose, at, scale = 1) {
   const [x, y, z, w, i, j, k] = pose.slice(at, at + 7);
@@ -111,6 +141,7 @@ class SpaceView {
     this.program = program;
     this.meshes = space.meshes.map((mesh) => this.upload(unpackMesh(mesh)));
     this.ball = this.upload(ballMesh());
+    this.arrow = this.upload(arrowMesh());
     this.ground = Math.min(...space.bodies.filter((body) => body.pose).map((body) => {
       const mesh = space.meshes[body.mesh], m = poseMatrix(body.pose, 0);
       let lowest = Infinity;
@@ -154,7 +185,7 @@ class SpaceView {
     return new Float32Array(out);
   }
 
-  // pose: {bodies: poses in a row, hand?: links' poses, on?: fingers that touch, fingers?: [number, x, y, z]}
+  // pose: {bodies: poses in a row, hand?: links' poses, on?: fingers that touch, fingers?: [number, contact, normal, force]}
   show(pose) {
     this.pose = pose;
     this.draw();
@@ -190,10 +221,25 @@ class SpaceView {
                       touches ? space.fingers[part.tip].color : part.color);
       }
     }
-    for (const [finger, x, y, z] of this.pose.fingers || []) {
-      this.drawMesh(this.ball, poseMatrix([x, y, z, 1, 0, 0, 0], 0, space.fingers[finger].radius),
-                    space.fingers[finger].color);
+    for (const [number, ...at] of this.pose.fingers || []) {
+      const { radius, color } = space.fingers[number];
+      const p = at.slice(0, 3), force = at.slice(6, 9);
+      const center = p.map((x, i) => x + radius * at[3 + i]);
+      if (!this.pose.hand) this.drawMesh(this.ball, poseMatrix([...center, 1, 0, 0, 0], 0, radius), color);
+      if (Math.hypot(...force) > 1e-3) this.drawArrow(arrowMatrix(p, force), color);
     }
+  }
+  // What bodies hide of it shines through.
+  drawArrow(matrix, color) {
+    const gl = this.gl;
+    gl.disable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendColor(0, 0, 0, 0.4);
+    gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
+    this.drawMesh(this.arrow, matrix, '#ffffff', 0);
+    gl.disable(gl.BLEND);
+    gl.enable(gl.DEPTH_TEST);
+    this.drawMesh(this.arrow, matrix, color);
   }
   drawMesh(mesh, matrix, color, lit = 1, kind = this.gl.TRIANGLES) {
     const gl = this.gl;
@@ -256,17 +302,17 @@ page.film = (() => {
   const speed = page.add(controls, 'select', { 'aria-label': 'speed' });
   for (const [value, text] of [['1', 'as it is'], ['0.5', 'half as fast'], ['0.2', 'a fifth as fast']]) page.add(speed, 'option', { value }, text);
   const label = page.add(controls, 'output', { 'aria-live': 'off' });
-  page.add(box, 'p', { class: 'hint' }, 'Drag to turn, with shift to move; arrow keys turn, + and - come nearer and go away, Home goes back.');
+  page.add(box, 'p', { class: 'hint' }, 'Arrows are the fingers’ forces on the object. Drag to turn, with shift to move; arrow keys turn, + and - come nearer and go away, Home goes back.');
   const bits = (mask) => space.fingers.map((_, i) => i).filter((i) => mask >> i & 1);
   const show = (i) => {
     const on = film.on ? bits(film.on[i]) : [];
     view.show({
       bodies: bodies.subarray(i * perFrame, (i + 1) * perFrame),
-      hand: hand && hand.subarray(i * links, (i + 1) * links), on, fingers: film.fingers ? film.fingers[i] : [],
+      hand: hand && hand.subarray(i * links, (i + 1) * links), on, fingers: film.fingers[i],
     });
     slider.value = i;
-    const tips = film.fingers ? film.fingers[i].map(([f]) => f) : on;
-    const touching = tips.map((f) => space.fingers[f].name).join(', ');
+    const forces = new Map(film.fingers[i].map(([f, ...at]) => [f, Math.hypot(...at.slice(6, 9))]));
+    const touching = (film.on ? on : [...forces.keys()]).map((f) => space.fingers[f].name + (forces.get(f) > 1e-3 ? ` ${forces.get(f).toFixed(2)} N` : '')).join(', ');
     label.textContent = `t = ${film.t[i].toFixed(2)} s` + (film.phase ? ` · ${film.phase[i]}` : '') + (touching ? ` · ${touching}` : '');
   };
   let timer = null;
