@@ -58,7 +58,7 @@ void SetSize(const std::string& size, PictureConfig& config) {
 // Directions to look from, a little from above.
 struct NamedView {
   const char* name;
-  Vector3 view_W;
+  Vector3 direction;
 };
 const std::array<NamedView, 5> kViews{{{"front", {0.0, -1.0, 0.35}},
                                        {"back", {0.0, 1.0, 0.35}},
@@ -71,7 +71,7 @@ std::optional<Vector3> FindView(const std::string& name) {
   if (name.empty() || name == "run") return std::nullopt;
   std::string all = "run";
   for (const NamedView& view : kViews) {
-    if (name == view.name) return view.view_W;
+    if (name == view.name) return view.direction;
     all += std::string(", ") + view.name;
   }
   throw InputError("--camera", "", "one of " + all, '"' + name + '"');
@@ -103,7 +103,7 @@ void RefuseFlags(const ShowOptions& options, bool pictures) {
 }
 
 int ShowStep(const ShowOptions& options) {
-  const std::optional<Vector3> view_W = FindView(options.camera);
+  const std::optional<Vector3> view = FindView(options.camera);
   const LoadedRun run = LoadRun(options.run);
   const StepFacts& step = run.Get(options.step);
   Shot shot = FindShot(run.directory, options.step);
@@ -116,8 +116,8 @@ int ShowStep(const ShowOptions& options) {
     std::vector<const StepFacts*> story = steps.FindStory(run.steps.size());
     story.push_back(&step);
     shot.config.camera = drawer.FrameSteps(story, run, shot.config);
-  } else if (view_W) {
-    shot.config.camera = drawer.FrameSteps({&step}, run, shot.config, view_W);
+  } else if (view) {
+    shot.config.camera = drawer.FrameSteps({&step}, run, shot.config, view);
   }
   if (std::filesystem::path(options.out).extension() == ".3Dscene") {
     drawer.WriteScene(step, run, shot, options.out);
@@ -128,18 +128,18 @@ int ShowStep(const ShowOptions& options) {
 }
 
 int ShowSheet(const ShowOptions& options) {
-  const std::optional<Vector3> view_W = FindView(options.camera);
+  const std::optional<Vector3> view = FindView(options.camera);
   Shot shot;
   shot.config.width = 1920;
   shot.config.height = 1440;
   ApplyOptions(options, shot.config);
-  WritePng(DrawContactSheet(LoadRun(options.run), shot, view_W), options.out);
+  WritePng(DrawContactSheet(LoadRun(options.run), shot, view), options.out);
   return 0;
 }
 
 int ShowFilm(const ShowOptions& options) {
   RefuseFlags(options, true);
-  const std::optional<Vector3> view_W = FindView(options.camera);
+  const std::optional<Vector3> view = FindView(options.camera);
   Shot shot;
   const bool small = std::filesystem::path(options.out).extension() == ".gif";
   shot.config.width = small ? 480 : 960;
@@ -148,7 +148,7 @@ int ShowFilm(const ShowOptions& options) {
   if (small) shot.config.card = shot.config.footer = false;
   ApplyOptions(options, shot.config);
   ProgressLine line;
-  WriteFilm(LoadRun(options.run), shot, view_W, options.out,
+  WriteFilm(LoadRun(options.run), shot, view, options.out,
             [&](int done, int total) { line.Show("film", done, total); });
   return 0;
 }

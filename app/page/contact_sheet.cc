@@ -58,7 +58,7 @@ void Paste(Image& sheet, const Image& picture, int x, int y) {
 
 }  // namespace
 
-Image DrawContactSheet(const LoadedRun& run, const Shot& shot, const std::optional<Vector3>& view_W,
+Image DrawContactSheet(const LoadedRun& run, const Shot& shot, const std::optional<Vector3>& view,
                        std::size_t most) {
   const std::vector<const StepFacts*> story = RunSteps(run).FindStory(most);
   const int width = shot.config.width, count = static_cast<int>(story.size());
@@ -79,7 +79,7 @@ Image DrawContactSheet(const LoadedRun& run, const Shot& shot, const std::option
   one.config.width = cell;
   one.config.height = cell * 9 / 16;
   PictureDrawer drawer(run.scene, {run.summary.seed, run.scene.name, ""});
-  one.config.camera = drawer.FrameSteps(story, run, one.config, view_W);
+  one.config.camera = drawer.FrameSteps(story, run, one.config, view);
 
   Image sheet;
   sheet.width = width;

@@ -128,7 +128,7 @@ bool IsFilmFile(const std::filesystem::path& file) {
   return kind == ".mp4" || kind == ".webm" || kind == ".gif";
 }
 
-void WriteFilm(const LoadedRun& run, const Shot& shot, const std::optional<Vector3>& view_W,
+void WriteFilm(const LoadedRun& run, const Shot& shot, const std::optional<Vector3>& view,
                const std::filesystem::path& file, const std::function<void(int, int)>& progress) {
   const std::vector<FilmFrame> film = RequireFilm(run);
   Shot one = shot;
@@ -144,7 +144,7 @@ void WriteFilm(const LoadedRun& run, const Shot& shot, const std::optional<Vecto
   std::vector<const StepFacts*> framed;
   for (std::size_t i = 0; i < frames.size(); i += 10) framed.push_back(&frames[i]);
   framed.push_back(&frames.back());
-  one.config.camera = drawer.FrameSteps(framed, run, one.config, view_W);
+  one.config.camera = drawer.FrameSteps(framed, run, one.config, view);
 
   // Beside the file and of its kind, which ffmpeg goes by.
   std::filesystem::path partial = file;

@@ -16,10 +16,10 @@ bool IsFilmFile(const std::filesystem::path& file);
 /// the program ffmpeg: H.264 for .mp4, VP9 for .webm; a .gif shows every third frame. The same run
 /// and the same ffmpeg give the same bytes. The file appears when it is whole.
 /// @param shot      what every frame shows; its size is made even.
-/// @param view_W    towards the camera; unset takes the automatic one.
+/// @param view    towards the camera; unset takes the automatic one.
 /// @param progress  called with the frames that are done and that there are.
 /// @throws InputError for a run without a motion, without ffmpeg, or if ffmpeg fails.
-void WriteFilm(const LoadedRun& run, const Shot& shot, const std::optional<Vector3>& view_W,
+void WriteFilm(const LoadedRun& run, const Shot& shot, const std::optional<Vector3>& view,
                const std::filesystem::path& file, const std::function<void(int, int)>& progress);
 
 }  // namespace pregrasp

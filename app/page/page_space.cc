@@ -17,6 +17,7 @@
 #include "app/session/motion_film.h"
 #include "render/canvas.h"
 #include "render/palette.h"
+#include "render/upright.h"
 
 namespace pregrasp {
 namespace {
@@ -128,10 +129,10 @@ class Space {
                          {"radius", FingertipRadius(finger)}});
     }
     for (const StepFacts* step : steps) poses.push_back(step == nullptr ? Json() : StepJson(*step));
-    return {{"meshes", std::move(meshes_)}, {"bodies", std::move(bodies_)},
-            {"hand", std::move(hand_)},     {"links", kNumHandLinks},
-            {"force", ForceJson()},         {"fingers", std::move(fingers)},
-            {"steps", std::move(poses)},    {"film", FilmJson()}};
+    return {
+        {"meshes", std::move(meshes_)},  {"bodies", std::move(bodies_)}, {"hand", std::move(hand_)},
+        {"links", kNumHandLinks},        {"upright", UprightJson()},     {"force", ForceJson()},
+        {"fingers", std::move(fingers)}, {"steps", std::move(poses)},    {"film", FilmJson()}};
   }
 
  private:
@@ -166,6 +167,16 @@ class Space {
     const auto& [r, g, b, a] = shape.rgba;
     hand_.push_back(
         {{"mesh", mesh}, {"link", shape.link}, {"color", CssColor({r, g, b, a})}, {"tip", tip}});
+  }
+
+  // The rotation to a frame in which z is against gravity, row by row: views turn about that.
+  Json UprightJson() const {
+    const Matrix3 R_UW = UprightRotation(-run_.scene.gravity.normalized());
+    Json rows = Json::array();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) rows.push_back(R_UW(row, column));
+    }
+    return rows;
   }
 
   // Arrows are as long as the pictures'.

@@ -310,6 +310,12 @@ TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
             "--size: expected a picture, --out FILE.png, or a film, FILE.mp4, got page.html\n");
   EXPECT_EQ(show({"--step", "scene.start", "--camera", "below", "--out", "step.png"}).err,
             "--camera: expected one of run, front, back, left, right, top, got \"below\"\n");
+  for (const char* camera : {"run", "top"}) {
+    EXPECT_EQ(show({"--step", "scene.start", "--camera", camera, "--no-card", "--font-scale", "1.5",
+                    "--size", "160x90", "--out", "step.png"})
+                  .code,
+              0);
+  }
   EXPECT_EQ(show({"--out", "step.jpg"}).code, 2);
   EXPECT_EQ(show({"--size", "1280x960", "--out", "sheet.png"}).code, 0);
   EXPECT_EQ(ReadPng(folder / "sheet.png").width, 1280);

@@ -70,13 +70,18 @@ page.graph = (() => {
   page.add(side, 'p', { class: 'hint' }, 'The thumb’s triangle is magenta, the index finger’s vermilion, with a broken rim where it is on the far side; the others have the colour of the best state that uses them. Drag the mesh to turn it.');
 
   // The mesh, painted from the back to the front.
-  const points = Array.from({ length: graph.V.length / 3 }, (_, i) => graph.V.slice(3 * i, 3 * i + 3));
+  // As the object stands at the start.
+  const turn = poseMatrix(space.steps[0].bodies[0], 0);
+  const points = Array.from({ length: graph.V.length / 3 }, (_, i) => {
+    const p = graph.V.slice(3 * i, 3 * i + 3);
+    return upright([0, 1, 2].map((k) => turn[k] * p[0] + turn[4 + k] * p[1] + turn[8 + k] * p[2]));
+  });
   const low = [0, 1, 2].map((k) => Math.min(...points.map((p) => p[k]))), high = [0, 1, 2].map((k) => Math.max(...points.map((p) => p[k])));
   const best = Array(n).fill(-1);
   graph.s_c.forEach((score, id) => {
     for (const t of [Math.floor(id / n), id % n]) best[t] = Math.max(best[t], score);
   });
-  const start = space.cameras.story, back = start.p_WCam.map((x, i) => x - start.p_WTarget[i]);
+  const start = space.cameras.story, back = upright(start.p_WCam.map((x, i) => x - start.p_WTarget[i]));
   const table = new Turntable(mesh, {
     azimuth: Math.atan2(back[1], back[0]), elevation: Math.asin(back[2] / Math.hypot(...back)), distance: 1,
     target: low.map((x, k) => 0.5 * (x + high[k])),

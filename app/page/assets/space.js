@@ -2,6 +2,10 @@
 
 const space = page.data('space-data');
 
+// From the world to a frame that stands upright, z against gravity, and back: views turn in that.
+const upright = (v) => [0, 1, 2].map((i) => v.reduce((sum, x, k) => sum + space.upright[3 * i + k] * x, 0));
+const fromUpright = (v) => [0, 1, 2].map((i) => v.reduce((sum, x, k) => sum + space.upright[3 * k + i] * x, 0));
+
 const floats = (text) => {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   return new Float32Array(bytes.buffer);
@@ -107,13 +111,13 @@ void main() {
 const fragmentShader = `#version 300 es
 precision highp float;
 in vec3 normal, place;
-uniform vec3 color, eye, light;
+uniform vec3 color, eye, light, zenith;
 uniform float lit;
 out vec4 result;
 void main() {
   vec3 n = normalize(normal), to_eye = normalize(eye - place);
   if (dot(n, to_eye) < 0.0) n = -n;
-  float key = max(dot(n, light), 0.0), sky = 0.5 + 0.5 * n.z, side = max(dot(n, to_eye), 0.0);
+  float key = max(dot(n, light), 0.0), sky = 0.5 + 0.5 * dot(n, zenith), side = max(dot(n, to_eye), 0.0);
   vec3 half_way = normalize(light + to_eye);
   float shine = pow(max(dot(n, half_way), 0.0), 40.0) * 0.12;
   vec3 c = color * (0.16 + 0.26 * sky + 0.18 * side + 0.48 * key) + shine;
@@ -147,16 +151,17 @@ class SpaceView {
       let lowest = Infinity;
       for (let i = 0; i < 8; ++i) {
         const p = [0, 1, 2].map((k) => mesh.low[k] + (i >> k & 1) * mesh.size[k]);
-        lowest = Math.min(lowest, m[2] * p[0] + m[6] * p[1] + m[10] * p[2] + m[14]);
+        const corner = [0, 1, 2].map((k) => m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k]);
+        lowest = Math.min(lowest, upright(corner)[2]);
       }
       return lowest;
     }), 0);
     this.grid = this.upload(this.gridLines());
-    const back = start.p_WCam.map((x, i) => x - start.p_WTarget[i]), distance = Math.hypot(...back);
+    const back = upright(start.p_WCam.map((x, i) => x - start.p_WTarget[i])), distance = Math.hypot(...back);
     this.fov = start.fov_deg * Math.PI / 180;
     this.camera = new Turntable(canvas, {
       azimuth: Math.atan2(back[1], back[0]), elevation: Math.asin(back[2] / distance), distance,
-      target: start.p_WTarget,
+      target: upright(start.p_WTarget),
     }, () => this.draw());
     new ResizeObserver(() => this.draw()).observe(canvas);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.draw());
@@ -179,7 +184,7 @@ class SpaceView {
     const out = [], n = 10, step = 0.1, z = this.ground - 1e-3;
     for (let i = -n; i <= n; ++i) {
       for (const line of [[[i, -n], [i, n]], [[-n, i], [n, i]]]) {
-        for (const [x, y] of line) out.push(x * step, y * step, z, 0, 0, 1);
+        for (const [x, y] of line) out.push(...fromUpright([x * step, y * step, z]), 0, 0, 1);
       }
     }
     return new Float32Array(out);
@@ -201,11 +206,13 @@ class SpaceView {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.useProgram(this.program);
-    const { right, up, back } = this.camera.axes();
-    const eye = this.camera.target.map((x, i) => x + this.camera.distance * back[i]);
+    const axes = this.camera.axes();
+    const [right, up, back, target, zenith] = [axes.right, axes.up, axes.back, this.camera.target, [0, 0, 1]].map(fromUpright);
+    const eye = target.map((x, i) => x + this.camera.distance * back[i]);
     gl.uniformMatrix4fv(this.uniform('view'), false, this.viewMatrix(right, up, back, eye, width / height));
     gl.uniform3fv(this.uniform('eye'), eye);
-    const light = [0, 1, 2].map((i) => 0.9 * back[i] - 0.45 * right[i] + 0.9 * up[i] + (i === 2 ? 0.6 : 0));
+    const light = [0, 1, 2].map((i) => 0.9 * back[i] - 0.45 * right[i] + 0.9 * up[i] + 0.6 * zenith[i]);
+    gl.uniform3fv(this.uniform('zenith'), zenith);
     const length = Math.hypot(...light);
     gl.uniform3fv(this.uniform('light'), light.map((x) => x / length));
     this.drawMesh(this.grid, poseMatrix([0, 0, 0, 1, 0, 0, 0], 0), page.color('--grid'), 0, gl.LINES);
