@@ -25,7 +25,8 @@ int ChooseColumns(int width, int height, int cells, double words) {
   double best_width = 0.0;
   for (int columns = 1; columns <= cells; ++columns) {
     const int rows = (cells + columns - 1) / columns;
-    const double cell = std::min<double>(width / columns, (height / rows - words) * 16.0 / 9.0);
+    const double wide = width, high = height;
+    const double cell = std::min(wide / columns, (high / rows - words) * 16.0 / 9.0);
     if (cell > best_width) {
       best_width = cell;
       best = columns;
@@ -89,8 +90,9 @@ Image DrawContactSheet(const LoadedRun& run, const Shot& shot, const std::option
   const Rgba ink = FromSrgb(0x22262C), soft = FromSrgb(0x5C6570);
   for (int i = 0; i < count; ++i) {
     const StepFacts& step = *story[static_cast<std::size_t>(i)];
-    const double x = gap + (i % columns) * (cell + gap);
-    double y = gap + (i / columns) * (one.config.height + words + gap);
+    const int row = i / columns, column = i % columns;
+    const double x = gap + column * (cell + gap);
+    double y = gap + row * (one.config.height + words + gap);
     Paste(sheet, drawer.Render(step, run, one), static_cast<int>(x), static_cast<int>(y));
     Canvas canvas(sheet, fonts);
     y += one.config.height + 1.3 * line;

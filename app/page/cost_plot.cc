@@ -65,7 +65,9 @@ std::string ToSvg(const CostPlot& plot) {
       "<svg class=\"plot\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n"
       "<title>{}</title>\n",
       kWidth, kHeight, EscapeHtml(plot.title), EscapeHtml(plot.title));
-  for (double at = up.low; at <= up.high + 0.5 * up.tick; at += up.tick) {
+  const int ticks = static_cast<int>(std::lround((up.high - up.low) / up.tick));
+  for (int i = 0; i <= ticks; ++i) {
+    const double at = up.low + i * up.tick;
     svg += fmt::format(
         "<line class=\"grid\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", kLeft,
         y_of(at), right, y_of(at));
@@ -73,7 +75,8 @@ std::string ToSvg(const CostPlot& plot) {
                     fmt::format("{:.6g}", std::abs(at) < 1e-9 * up.tick ? 0.0 : at));
   }
   const double x_tick = std::max(1.0, std::ceil((x_high - x_low) / 10.0));
-  for (double at = x_low; at <= x_high; at += x_tick) {
+  for (int i = 0; x_low + i * x_tick <= x_high; ++i) {
+    const double at = x_low + i * x_tick;
     svg += PlotText(x_of(at), bottom + 18.0, "middle", fmt::format("{:.0f}", at));
   }
   double name_y = -1e9;

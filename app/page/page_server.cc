@@ -1,7 +1,6 @@
 #include "app/page/page_server.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <algorithm>
 #include <atomic>
@@ -17,6 +16,10 @@
 #include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
 #include "app/recording/summary.h"
+
+// Last: the system's resolv.h, which it reads, has a macro _res, and Eigen has parameters of that
+// name.
+#include <httplib.h>
 
 namespace pregrasp {
 namespace {
@@ -169,14 +172,14 @@ void ServePages(const fs::path& folder, int port,
   Pages pages;
   const std::string html = "text/html; charset=utf-8";
   server.Get("/", [&](const httplib::Request&, httplib::Response& response) {
-    response.set_content(ListPage(folder), html.c_str());
+    response.set_content(ListPage(folder), html);
   });
   server.Get("/run/(.+)", [&](const httplib::Request& request, httplib::Response& response) {
     const std::string asked = request.matches[1];
     for (const fs::path& name : FindRuns(folder)) {
       if (name.string() != asked) continue;
       try {
-        response.set_content(pages.Get(folder / name), html.c_str());
+        response.set_content(pages.Get(folder / name), html);
       } catch (const InputError& problem) {
         response.status = 500;
         response.set_content(std::string(problem.what()) + '\n', "text/plain; charset=utf-8");

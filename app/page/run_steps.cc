@@ -100,9 +100,7 @@ std::vector<const StepFacts*> RunSteps::FindStory(std::size_t most) const {
     if (!IsOnWay(step) || told.count(&step) > 0) continue;
     if (IsByHand(verb)) {
       actions.push_back(&step);
-    } else if (verb == Verb::kPath) {
-      told.insert(&step);
-    } else if (!IsKeyStep(step, run_)) {
+    } else if (verb != Verb::kPath && !IsKeyStep(step, run_)) {
       continue;
     } else if (verb == Verb::kIterate) {
       iterations.push_back(&step);
