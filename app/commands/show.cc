@@ -167,8 +167,8 @@ int Show(const ShowOptions& options) {
     return 0;
   }
   if (IsFilmFile(out)) return ShowFilm(options);
-  if (!options.step.empty()) return ShowStep(options);
-  if (kind == ".png") return ShowSheet(options);
+  if (!options.step.empty() && (kind == ".png" || kind == ".3Dscene")) return ShowStep(options);
+  if (options.step.empty() && kind == ".png") return ShowSheet(options);
   throw InputError("--out", "",
                    "FILE.png, .html, .mp4, .webm, .gif or .glb, or with --step FILE.3Dscene",
                    '"' + options.out + '"');

@@ -317,6 +317,7 @@ TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
               0);
   }
   EXPECT_EQ(show({"--out", "step.jpg"}).code, 2);
+  EXPECT_EQ(show({"--step", "scene.start", "--out", "step.jpg"}).code, 2);
   EXPECT_EQ(show({"--size", "1280x960", "--out", "sheet.png"}).code, 0);
   EXPECT_EQ(ReadPng(folder / "sheet.png").width, 1280);
   const std::string path = std::getenv("PATH");
