@@ -62,8 +62,8 @@ struct LuaValue<AnyPlace> {
 struct LuaPaths : Cursor {
   PathOrder order = PathOrder::kExplore;
   int stages = 0;
-  int next = 1;                                     ///< the rank that next() asks for first
-  std::shared_ptr<const FunctionReference> filter;  ///< null: all paths count
+  int next = 1;  ///< the rank that next() asks for first
+  std::shared_ptr<const FunctionReference> filter = nullptr;  ///< null: all paths count
 };
 
 struct LuaPath {

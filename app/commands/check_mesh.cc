@@ -66,6 +66,7 @@ RenderScene ComposeHoles(const std::string& title, const TriangleMesh& mesh, dou
     if (out.norm() > 1e-3 * (high - low).norm()) view = 0.5 * view + out.normalized();
   }
   picture.camera = FrameCamera(mesh.V, view, aspect);
+  picture.axes = false;
   picture.caption.title = title;
   picture.caption.lines = {
       holes.empty()

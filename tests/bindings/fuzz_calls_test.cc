@@ -83,7 +83,7 @@ local good = {
     triangles = function() return { finger = pick(fingers), count = random(3) } end, forward = function() return random(0, 1) end,
     path = function() return { random(0, 143), { thumb = random(0, 11), index = random(0, 12) } } end,
     what_if = function() return { set = { ["environment.post.p"] = { 0, 0, 0.15 } } } end,
-    neighbors = function() return random(0, 143) end, 
+    neighbors = function() return random(0, 143) end,
     paths = function() return { stages = random(2), filter = random(2) == 1 and predicate() or nil } end,
     back = function() return random(0, 1) end, fork = function() end,
   },
