@@ -1,6 +1,5 @@
 #pragma once
 
-#include <lua5.4/lua.hpp>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -9,6 +8,7 @@
 
 #include "app/core/error.h"
 #include "app/core/memory_claim.h"
+#include "bindings/lua_api.h"
 #include "bindings/machine.h"
 #include "bindings/schema.h"
 #include "bindings/value.h"

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <lua5.4/lua.hpp>
 #include <string>
+
+#include "bindings/lua_api.h"
 
 namespace pregrasp {
 

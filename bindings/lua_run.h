@@ -1,9 +1,9 @@
 #pragma once
 
-#include <lua5.4/lua.hpp>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "bindings/lua_api.h"
 #include "bindings/schema.h"
 
 namespace pregrasp {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <lua5.4/lua.hpp>
 #include <string>
 #include <vector>
 
 #include "app/scene/scene.h"
+#include "bindings/lua_api.h"
 #include "bindings/value.h"
 
 namespace pregrasp {

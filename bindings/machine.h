@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <lua5.4/lua.hpp>
 #include <map>
 #include <memory>
 #include <set>
@@ -13,6 +12,7 @@
 
 #include "app/core/memory_claim.h"
 #include "bindings/file_access.h"
+#include "bindings/lua_api.h"
 
 namespace pregrasp {
 

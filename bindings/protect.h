@@ -1,12 +1,12 @@
 #pragma once
 
 #include <exception>
-#include <lua5.4/lua.hpp>
 #include <new>
 #include <string>
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "bindings/lua_api.h"
 #include "bindings/machine.h"
 
 namespace pregrasp {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <lua5.4/lua.hpp>
+#include "bindings/lua_api.h"
 
 namespace pregrasp {
 

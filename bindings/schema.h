@@ -1,8 +1,9 @@
 #pragma once
 
-#include <lua5.4/lua.hpp>
 #include <string>
 #include <vector>
+
+#include "bindings/lua_api.h"
 
 namespace pregrasp {
 

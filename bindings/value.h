@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <lua5.4/lua.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "app/core/error.h"
 #include "app/core/math.h"
 #include "app/scene/finger.h"
+#include "bindings/lua_api.h"
 #include "bindings/schema.h"
 
 namespace pregrasp {

@@ -2,8 +2,7 @@
 // makes.
 #include <gtest/gtest.h>
 
-#include <lua5.4/lua.hpp>
-
+#include "bindings/lua_api.h"
 #include "tests/bindings/run_program.h"
 
 namespace pregrasp {

@@ -58,7 +58,9 @@ TEST(ReplPipeTest, TheFirstErrorIsOneLineWithItsLineAndEndsIt) {
     EXPECT_EQ(result.err, expected);
     const bool recorded = text.find("record") != std::string::npos;
     EXPECT_EQ(ListFiles(folder.path()).empty(), !recorded) << text;
-    if (recorded) EXPECT_EQ(LoadRun(folder.path() / "out/x").summary.status, "failed");
+    if (recorded) {
+      EXPECT_EQ(LoadRun(folder.path() / "out/x").summary.status, "failed");
+    }
     std::filesystem::remove_all(folder.path() / "out");
   }
   const ProgramResult missing = Pipe("1\n", folder, {"missing.lua"});
