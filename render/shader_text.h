@@ -4,7 +4,7 @@
 
 namespace pregrasp {
 
-/// The text of render/shaders/NAME.glsl, compiled in (see embed_shaders.cmake).
+/// The text of render/shaders/NAME.glsl, compiled in (cmake/embed_text.cmake).
 std::string ShaderText(const std::string& name);
 
 }  // namespace pregrasp

@@ -36,11 +36,17 @@ const char* SeverityName(CheckFinding::Severity severity) {
   return kNames[static_cast<int>(severity)];
 }
 
-int CheckMeshFile(const CheckOptions& options) {
-  for (const auto& [flag, given] : {std::pair("--set", !options.settings.empty()),
-                                    std::pair("--no-grasps", options.no_grasps)}) {
-    if (given) throw InputError(flag, "", "a scene, a Lua file", options.scene);
+// Flags that make no sense of the file that was given.
+void RefuseFlags(const std::vector<std::pair<const char*, bool>>& given,
+                 const std::string& expected, const std::string& file) {
+  for (const auto& [flag, is_given] : given) {
+    if (is_given) throw InputError(flag, "", expected, file);
   }
+}
+
+int CheckMeshFile(const CheckOptions& options) {
+  RefuseFlags({{"--set", !options.settings.empty()}, {"--no-grasps", options.no_grasps}},
+              "a scene, a Lua file", options.scene);
   MeshCheck mesh = options.mesh;
   mesh.file = options.scene;
   return CheckMesh(mesh);
@@ -49,11 +55,10 @@ int CheckMeshFile(const CheckOptions& options) {
 // One line a finding; the first error is the one line on stderr.
 int Check(const CheckOptions& options) {
   if (IsMeshFile(options.scene)) return CheckMeshFile(options);
-  for (const auto& [flag, given] :
-       {std::pair("--scale", options.mesh.scale != 1.0), std::pair("--repair", options.mesh.repair),
-        std::pair("--picture", !options.mesh.picture.empty())}) {
-    if (given) throw InputError(flag, "", "a mesh file (.obj, .stl, .ply, ..)", options.scene);
-  }
+  RefuseFlags({{"--scale", options.mesh.scale != 1.0},
+               {"--repair", options.mesh.repair},
+               {"--picture", !options.mesh.picture.empty()}},
+              "a mesh file (.obj, .stl, .ply, ..)", options.scene);
   std::vector<Setting> settings;
   for (const std::string& setting : options.settings) settings.push_back(ParseSetting(setting));
   const Scene scene = LoadSceneFile(options.scene, settings);

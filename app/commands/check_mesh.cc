@@ -42,7 +42,6 @@ TriangleMesh ReadWelded(const MeshCheck& check) {
   return mesh;
 }
 
-// Everything at the size of a picture's floor and lines, whatever the file's unit.
 RenderScene ComposeHoles(const std::string& title, const TriangleMesh& mesh, double aspect) {
   const Vector3 low = mesh.V.colwise().minCoeff(), high = mesh.V.colwise().maxCoeff();
   RenderScene picture;

@@ -8,67 +8,12 @@
 #include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
 #include "bindings/script.h"
-#include "tests/bindings/lua_text.h"
-#include "tests/networks/random_network.h"
+#include "tests/bindings/planner_script.h"
 
 namespace pregrasp {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::internal::CaptureStdout;
-using testing::internal::GetCapturedStdout;
-
-// Small stages, so that a test takes well under a second.
-const char* const kPlannerPrelude = R"(local pg = require "pregrasp"
-local function session() return pg.open "scenes/ruler.lua" end
-local function graph(s) return (s or session()):graph{ triangles = 12, samples = 1, points = 128 } end
-local function pruned(s) local g = graph(s) g:score() g:prune{ top_percent = 20 } return g end
-local function optimizer(s) return pruned(s):paths{ stages = 2 }:next():optimize{ samples = 6, iterations = 4, patience = 9 } end
-local function run(o) while o:step() do end return o end
-local function same(a, b) assert(#a == #b) for i = 1, #a do if a[i].cost ~= b[i].cost then return false end end return true end
-)";
-
-class PlannerScriptTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    weights_ = std::make_unique<TestFolder>();
-    WriteRandomWeights(weights_->path());
-  }
-  static void TearDownTestSuite() { weights_.reset(); }
-
-  std::string Script(const std::string& body) {
-    config_.output = folder_.path() / "out";
-    if (config_.weights.empty()) config_.weights = weights_->path();
-    const auto file = folder_.Write("test.lua", kPlannerPrelude + body);
-    CaptureStdout();
-    try {
-      RunScript(file, {}, config_);
-    } catch (const std::exception&) {
-      GetCapturedStdout();
-      throw;
-    }
-    return GetCapturedStdout();
-  }
-
-  // The line with which the script's only line fails, after its position.
-  std::string Failure(const std::string& line) {
-    try {
-      Script(line);
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      const std::string marker = "test.lua:8: ";
-      const std::size_t at = message.find(marker);
-      return at == std::string::npos ? "not of the line: " + message
-                                     : message.substr(at + marker.size());
-    }
-    return "no failure";
-  }
-
-  static std::unique_ptr<TestFolder> weights_;
-  TestFolder folder_;
-  ScriptConfig config_;
-};
-std::unique_ptr<TestFolder> PlannerScriptTest::weights_;
 
 TEST_F(PlannerScriptTest, AGraphIsMeshedScoredAndPrunedStepByStep) {
   EXPECT_EQ(Script(R"(

@@ -1,5 +1,5 @@
 // Going about in time, asking why, whole runs and other scenes, from scripts. The networks' weights
-// are random, as in planner_test.cc.
+// are random (planner_script.h).
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -7,60 +7,12 @@
 
 #include "app/recording/loaded_run.h"
 #include "bindings/script.h"
-#include "tests/bindings/lua_text.h"
-#include "tests/networks/random_network.h"
+#include "tests/bindings/planner_script.h"
 
 namespace pregrasp {
 namespace {
 
-using ::testing::internal::CaptureStdout;
-using ::testing::internal::GetCapturedStdout;
-
-const char* const kTimePrelude = R"(local pg = require "pregrasp"
-local function session() return pg.open "scenes/ruler.lua" end
-local function graph(s) return (s or session()):graph{ triangles = 12, samples = 1, points = 128 } end
-local function pruned(s) local g = graph(s) g:score() g:prune{ top_percent = 20 } return g end
-local function optimizer(s) return pruned(s):paths{ stages = 2 }:next():optimize{ samples = 6, iterations = 4, patience = 9 } end
-)";
-
-class TimeMachineTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    weights_ = std::make_unique<TestFolder>();
-    WriteRandomWeights(weights_->path());
-  }
-  static void TearDownTestSuite() { weights_.reset(); }
-
-  std::string Script(const std::string& body) {
-    config_.output = folder_.path() / "out";
-    config_.weights = weights_->path();
-    const auto file = folder_.Write("test.lua", kTimePrelude + body);
-    CaptureStdout();
-    try {
-      RunScript(file, {}, config_);
-    } catch (const std::exception&) {
-      GetCapturedStdout();
-      throw;
-    }
-    return GetCapturedStdout();
-  }
-
-  std::string Failure(const std::string& line) {
-    try {
-      Script(line);
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      const std::size_t at = message.find("test.lua:6: ");
-      return at == std::string::npos ? message : message.substr(at + 12);
-    }
-    return "no failure";
-  }
-
-  static std::unique_ptr<TestFolder> weights_;
-  TestFolder folder_;
-  ScriptConfig config_;
-};
-std::unique_ptr<TestFolder> TimeMachineTest::weights_;
+class TimeMachineTest : public PlannerScriptTest {};
 
 TEST_F(TimeMachineTest, ForwardTakesAgainWhatBackTookBack) {
   EXPECT_EQ(Script(R"(
