@@ -79,6 +79,7 @@ int Run(int argc, char** argv) {
   AddDataset(command, action);
   AddDiff(command, action);
   AddEval(command, action);
+  AddHandCommand(command, action);
   AddInfo(command, action);
   AddJobs(command, action);
   AddRepl(command, action);

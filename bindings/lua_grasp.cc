@@ -1,6 +1,10 @@
 #include "bindings/lua_grasp.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -8,6 +12,7 @@
 #include "app/hand/ik.h"
 #include "app/job/planner_settings.h"
 #include "bindings/lua_session.h"
+#include "bindings/machine.h"
 
 namespace pregrasp {
 namespace {
@@ -16,7 +21,7 @@ const Schema kWrenchOptions{"WrenchOptions",
                             {"p", "n", "mu", "mass", "gravity", "f_min", "f_max", "torque_scale"}};
 const Schema kWrenchResult{
     "WrenchResult", {"feasible", "closed", "margin", "min_normal", "forces", "status", "residual"}};
-const Schema kIkOptions{"IkOptions", {"contacts", "scene", "seed", "max_starts", "near"}};
+const Schema kIkOptions{"IkOptions", {"contacts", "scene", "hand", "seed", "max_starts", "near"}};
 const Schema kIkContacts{"IkContacts", {"thumb", "index", "middle", "ring", "little"}};
 const Schema kIkContact{"IkContact", {"p", "n"}};
 const Schema kTransform{"Transform", {"p", "q"}};
@@ -25,9 +30,16 @@ const Schema kIkResult{
     "IkResult",
     {"status", "solved", "X_WH", "q", "tip_error", "cone_angle", "clearance", "starts", "method"}};
 
-const Schema& JointSchema() {
-  static const Schema schema{"HandJoints", {kHandJointNames.begin(), kHandJointNames.end()}};
-  return schema;
+// A hand's joints by name; of hands that FindHand keeps.
+const Schema& JointSchema(const HandModel& hand) {
+  static std::mutex mutex;
+  static std::map<const HandModel*, Schema> schemas;
+  const std::lock_guard lock(mutex);
+  const auto known = schemas.find(&hand);
+  if (known != schemas.end()) return known->second;
+  std::vector<std::string> names;
+  for (int j = 0; j < hand.num_joints; ++j) names.push_back(hand.joints[j].name);
+  return schemas.emplace(&hand, Schema{"HandJoints", std::move(names)}).first->second;
 }
 
 MatrixX3 ToMatrix(const std::vector<Vector3>& rows) {
@@ -67,6 +79,7 @@ struct IkOptions {
   std::shared_ptr<Session> session;
   std::int64_t seed = 1;
   int max_starts = IkConfig{}.max_starts;
+  const HandModel* hand = nullptr;
   std::optional<HandConfiguration> near;
 };
 template <>
@@ -78,25 +91,6 @@ struct LuaValue<RigidTransform> {
     const Quaternion q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
     if (!(std::abs(q.norm() - 1.0) < 1e-6)) fields.Refuse("q", "a quaternion of length 1");
     return MakeTransform(q.normalized(), fields.Required<Vector3>("p"));
-  }
-};
-// Of an IkResult, or of another table with the same X_WH and q.
-template <>
-struct LuaValue<HandConfiguration> {
-  static HandConfiguration Read(lua_State* L, int index, const std::string& path) {
-    if (!lua_istable(L, index)) {
-      throw InputError("", path, "a table with X_WH and q, as ik gives", DescribeValue(L, index));
-    }
-    const Fields fields(L, index, kIkResult, path + ".");
-    HandConfiguration hand;
-    hand.X_WH = fields.Required<RigidTransform>("X_WH");
-    fields.Push("q");
-    if (!lua_istable(L, -1)) fields.Refuse("q", "a table of joint angles by name");
-    const Fields joints(L, lua_gettop(L), JointSchema(), path + ".q.");
-    for (int j = 0; j < kNumHandJoints; ++j)
-      hand.q[j] = joints.Required<double>(kHandJointNames[j]);
-    lua_pop(L, 1);
-    return hand;
   }
 };
 template <>
@@ -111,25 +105,55 @@ struct LuaValue<IkContact> {
     return contact;
   }
 };
+// Of an IkResult, or of another table with the same X_WH and q.
+static HandConfiguration ReadConfiguration(lua_State* L, const Fields& of, const char* key,
+                                           const HandModel& hand) {
+  of.Push(key);
+  const std::string path = key;
+  if (!lua_istable(L, -1)) of.Refuse(key, "a table with X_WH and q, as ik gives");
+  const Fields fields(L, lua_gettop(L), kIkResult, path + ".");
+  HandConfiguration configuration;
+  configuration.X_WH = fields.Required<RigidTransform>("X_WH");
+  fields.Push("q");
+  if (!lua_istable(L, -1)) fields.Refuse("q", "a table of joint angles by name");
+  const Fields joints(L, lua_gettop(L), JointSchema(hand), path + ".q.");
+  for (int j = 0; j < hand.num_joints; ++j) {
+    configuration.q[j] = joints.Required<double>(hand.joints[j].name);
+  }
+  lua_pop(L, 2);
+  return configuration;
+}
 template <>
 struct LuaValue<IkOptions> {
   static IkOptions Read(lua_State* L, int index, const std::string& /*path*/) {
     const Fields fields(L, index, kIkOptions);
     IkOptions options;
+    if (fields.Has("scene")) options.session = fields.Required<std::shared_ptr<Session>>("scene");
+    if (fields.Has("hand")) {
+      if (options.session) fields.Refuse("hand", "no hand beside a scene, which has its own");
+      auto hand = fields.Required<std::string>("hand");
+      if (IsHandFile(hand)) hand = Machine::Of(L).files().FindForReading(hand).string();
+      options.hand = &FindHand(hand);
+    } else {
+      options.hand = options.session ? &options.session->job().hand() : &FindHand(kDefaultHand);
+    }
     fields.Push("contacts");
     if (!lua_istable(L, -1)) fields.Refuse("contacts", "a table of contacts by finger");
     const Fields by_finger(L, lua_gettop(L), kIkContacts, "contacts.");
     for (int f = 0; f < kNumFingers; ++f) {
       if (!by_finger.Has(kFingerNames[f])) continue;
+      if (f >= options.hand->num_fingers) {
+        fields.Refuse("contacts", fmt::format("fingers of the hand, of which it has {}",
+                                              options.hand->num_fingers));
+      }
       options.contacts.push_back(by_finger.Required<IkContact>(kFingerNames[f]));
       options.contacts.back().finger = static_cast<Finger>(f);
     }
     lua_pop(L, 1);
     if (options.contacts.empty()) fields.Refuse("contacts", "at least one contact");
-    if (fields.Has("scene")) options.session = fields.Required<std::shared_ptr<Session>>("scene");
     options.seed = fields.Optional<std::int64_t>("seed", options.seed);
     options.max_starts = fields.Optional("max_starts", options.max_starts);
-    options.near = fields.Find<HandConfiguration>("near");
+    if (fields.Has("near")) options.near = ReadConfiguration(L, fields, "near", *options.hand);
     return options;
   }
 };
@@ -170,13 +194,12 @@ Pushed Ik(lua_State* L, IkOptions& options) {
   IkResult result;
   if (options.session) {
     Session& session = *options.session;
-    const HandModel& hand = *session.job().setup().hand;
     problem.X_WB = session.world().GetPoses(session.GetStart());
-    result = IkSolver(hand, session.scene()).Solve(config, problem, rng);
+    result = IkSolver(*options.hand, session.scene()).Solve(config, problem, rng);
   } else {
-    result = IkSolver(*JobSetup().hand).Solve(config, problem, rng);
+    result = IkSolver(*options.hand).Solve(config, problem, rng);
   }
-  PushIk(L, result);
+  PushIk(L, *options.hand, result);
   return {1};
 }
 
@@ -197,12 +220,12 @@ void PushTransform(lua_State* L, const RigidTransform& X) {
   RecordWriter(L, kTransform).Set("p", Vector3(X.translation())).Set("q", Quaternion(X.linear()));
 }
 
-void PushJoints(lua_State* L, const HandJoints& q) {
-  RecordWriter joints(L, JointSchema());
-  for (int j = 0; j < kNumHandJoints; ++j) joints.Set(kHandJointNames[j], double(q[j]));
+void PushJoints(lua_State* L, const HandModel& hand, const HandJoints& q) {
+  RecordWriter joints(L, JointSchema(hand));
+  for (int j = 0; j < hand.num_joints; ++j) joints.Set(hand.joints[j].name, double(q[j]));
 }
 
-void PushIk(lua_State* L, const IkResult& result) {
+void PushIk(lua_State* L, const HandModel& hand, const IkResult& result) {
   RecordWriter record(L, kIkResult);
   record.Set("status", IkStatusName(result.status))
       .Set("solved", result.solved())
@@ -211,7 +234,7 @@ void PushIk(lua_State* L, const IkResult& result) {
       .Set("clearance", result.clearance)
       .Set("starts", result.starts)
       .Set("method", IkMethodName(result.method));
-  PushJoints(L, result.q);
+  PushJoints(L, hand, result.q);
   record.SetTop("q");
   PushTransform(L, result.X_WH);
   record.SetTop("X_WH");
@@ -236,7 +259,7 @@ const std::vector<FunctionInfo>& GraspFunctions() {
 
 std::vector<const Schema*> GraspSchemas() {
   return {&kWrenchOptions, &kWrenchResult, &kIkOptions,    &kIkContacts,  &kIkContact,
-          &kTransform,     &kIkResult,     &JointSchema(), &kGraspContact};
+          &kTransform,     &kIkResult,     &JointSchema(ShadowHand()), &kGraspContact};
 }
 
 }  // namespace pregrasp

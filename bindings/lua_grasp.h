@@ -14,9 +14,9 @@ std::vector<const Schema*> GraspSchemas();
 
 // Their results as records, and the parts of these.
 void PushWrench(lua_State* L, const WrenchResult& result);
-void PushIk(lua_State* L, const IkResult& result);
+void PushIk(lua_State* L, const HandModel& hand, const IkResult& result);
 void PushTransform(lua_State* L, const RigidTransform& X);
-void PushJoints(lua_State* L, const HandJoints& q);
+void PushJoints(lua_State* L, const HandModel& hand, const HandJoints& q);
 void PushGraspContacts(lua_State* L, const std::vector<GraspContact>& contacts);
 
 }  // namespace pregrasp

@@ -124,7 +124,7 @@ Pushed GraspWrench(lua_State* L, LuaGrasp& grasp) {
 Pushed GraspIk(lua_State* L, LuaGrasp& grasp) {
   const auto state = grasp.all.state();
   const auto& kinematics = grasp.grasp(*state).result.kinematics;
-  kinematics ? PushIk(L, kinematics->ik) : lua_pushnil(L);
+  kinematics ? PushIk(L, grasp.all.session->job().hand(), kinematics->ik) : lua_pushnil(L);
   return {1};
 }
 // nil where it is not feasible

@@ -217,7 +217,7 @@ Pushed FramePalm(lua_State* L, LuaFrame& frame) {
   return {1};
 }
 Pushed FrameJoints(lua_State* L, LuaFrame& frame) {
-  PushJoints(L, frame.facts().hand.configuration().q);
+  PushJoints(L, frame.session->job().hand(), frame.facts().hand.configuration().q);
   return {1};
 }
 Pushed FrameObject(lua_State* L, LuaFrame& frame) {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 #include "bindings/schema.h"
 
 namespace pregrasp {

@@ -32,7 +32,7 @@ namespace {
 using ShapePtr = std::shared_ptr<const LuaShape>;
 
 const Schema kSceneKeys{"SceneTable",
-                        {"name", "object", "environment", "fingertips", "gravity", "camera"}};
+                        {"name", "object", "environment", "fingertips", "hand", "gravity", "camera"}};
 const Schema kBodyKeys{"BodyTable",
                        {"name", "shape", "p", "rpy_deg", "mass", "friction", "com", "inertia"}};
 const Schema kFingertipKeys{"FingertipsTable",
@@ -247,6 +247,7 @@ Scene ReadSceneTable(lua_State* L, int index) {
   }
   lua_pop(L, 1);
   if (fields.Has("fingertips")) scene.fingertips = ReadFingertips(L, fields);
+  scene.hand = fields.Optional<std::string>("hand", scene.hand);
   scene.gravity = fields.Optional<Vector3>("gravity", scene.gravity);
   if (fields.Has("camera")) scene.camera = ReadCamera(L, fields, "camera");
   return scene;

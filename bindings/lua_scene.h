@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/scene/scene.h"
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 #include "bindings/value.h"
 
 namespace pregrasp {

@@ -12,7 +12,7 @@
 
 #include "app/core/memory_claim.h"
 #include "bindings/file_access.h"
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 
 namespace pregrasp {
 

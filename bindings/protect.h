@@ -6,7 +6,7 @@
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 #include "bindings/machine.h"
 
 namespace pregrasp {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 
 namespace pregrasp {
 

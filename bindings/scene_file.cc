@@ -3,6 +3,7 @@
 #include "app/core/data_folder.h"
 #include "app/core/error.h"
 #include "app/geometry/load_shape.h"
+#include "app/hand/hand_model.h"
 #include "bindings/lua_scene.h"
 #include "bindings/sandbox.h"
 #include "bindings/value.h"
@@ -44,6 +45,21 @@ struct FileFinder {
   void operator()(Primitive& /*primitive*/) const {}
 };
 
+// A hand that is named by its file lies beside the scene, or where files may be read.
+void FindHandFile(Scene& scene, const fs::path& folder, const FileAccess& files) {
+  try {
+    if (IsHandFile(scene.hand)) {
+      std::error_code ignored;
+      const fs::path beside = folder / scene.hand;
+      scene.hand = files.FindForReading(fs::exists(beside, ignored) ? beside.string() : scene.hand).string();
+    }
+    TakeHand(scene);
+  } catch (const InputError& error) {
+    if (!error.where().empty()) throw;
+    throw InputError(scene.where, "hand", error.expected(), error.got());
+  }
+}
+
 }  // namespace
 
 MachineConfig SceneFileLimits() {
@@ -63,6 +79,7 @@ void FinishScene(Scene& scene, const fs::path& folder, std::vector<Setting>& set
   for (Body& body : scene.bodies) {
     std::visit(FileFinder{folder, files, body.where}, body.shape);
   }
+  FindHandFile(scene, folder, files);
   LoadShapes(scene, folder);
 }
 

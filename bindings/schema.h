@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 
 namespace pregrasp {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 
 namespace pregrasp {
 

@@ -8,7 +8,7 @@
 #include "app/core/error.h"
 #include "app/core/math.h"
 #include "app/scene/finger.h"
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 #include "bindings/schema.h"
 
 namespace pregrasp {

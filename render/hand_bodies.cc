@@ -5,16 +5,14 @@
 
 namespace pregrasp {
 
-void AddHand(RenderScene& scene, const HandConfiguration& hand,
+void AddHand(RenderScene& scene, const HandModel& hand, const HandConfiguration& configuration,
              const std::array<bool, kNumFingers>& touching) {
-  const auto X_WL = CalcLinkPoses(ShadowHand(), hand);
-  for (const HandShape& shape : ShadowHandShapes()) {
+  const auto X_WL = CalcLinkPoses(hand, configuration);
+  for (const HandShape& shape : ShapesOf(hand)) {
     const auto& [r, g, b, a] = shape.rgba;
     Rgba color{r, g, b, a};
-    for (int f = 0; f < kNumFingers; ++f) {
-      const Finger finger = static_cast<Finger>(f);
-      if (touching[f] && shape.link == DistalLink(finger)) color = FingerColor(finger);
-    }
+    const std::optional<Finger> finger = hand.FingerOf(shape.link);
+    if (finger && touching[static_cast<int>(*finger)]) color = FingerColor(*finger);
     RenderBody body;
     body.mesh = shape.mesh;
     body.X_WB = X_WL[shape.link];

@@ -7,9 +7,9 @@
 
 namespace pregrasp {
 
-/// Adds the hand at `hand` to a picture, as its URDF's visuals show it.
+/// Adds a hand to a picture, as its URDF's visuals show it.
 /// @param touching  fingers whose last links get the finger's colour.
-void AddHand(RenderScene& scene, const HandConfiguration& hand,
+void AddHand(RenderScene& scene, const HandModel& hand, const HandConfiguration& configuration,
              const std::array<bool, kNumFingers>& touching = {});
 
 }  // namespace pregrasp

@@ -74,7 +74,7 @@ int Check(const CheckOptions& options) {
   if (errors > 0) return 2;
   if (!options.no_grasps) {
     ThreadPool pool(options.threads);
-    const StartCertificate start = FindSceneVerdict(scene, *JobSetup().hand, options.seed,
+    const StartCertificate start = FindSceneVerdict(scene, HandOf(scene), options.seed,
                                                     DataFolder() / "assets" / "weights", pool);
     const bool graspable = start.verdict == StartVerdict::kGraspable;
     warnings += graspable;

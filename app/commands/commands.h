@@ -14,6 +14,7 @@ void AddCheck(const Subcommand& app, Action& action);
 void AddDataset(const Subcommand& app, Action& action);
 void AddDiff(const Subcommand& app, Action& action);
 void AddEval(const Subcommand& app, Action& action);
+void AddHandCommand(const Subcommand& app, Action& action);
 void AddInfo(const Subcommand& app, Action& action);
 void AddJobs(const Subcommand& app, Action& action);
 void AddRepl(const Subcommand& app, Action& action);

@@ -56,7 +56,7 @@ RenderScene Compose(const SceneLabeler& labeler, const std::string& title, const
                               picture.bodies[0].mesh->F};
   MatrixX3 focus_W = FocusAround(object_W.V, 0.15, 0.04);
   if (example) {
-    AddHand(picture, example->hand);
+    AddHand(picture, HandOf(scene), example->hand);
     focus_W = FocusAround(focus_W, 0.25, 0.0);
     for (const GraspContact& contact : example->contacts) {
       picture.points.push_back({X_WB[0] * contact.p_OC, 0.003F, FingerColor(contact.finger)});

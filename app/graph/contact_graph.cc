@@ -35,13 +35,13 @@ std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& 
     for (int s = 0; s < samples; ++s) {
       const Placement::Contact contact = draw(t, rng);
       all[t].contacts.push_back(contact);
-      all[t].enclosed.push_back(!HasRoom(finger, contact, shape));
+      all[t].enclosed.push_back(!HasRoom(context.tips().radius(finger), contact, shape));
       all[t].occluded.push_back(all[t].enclosed.back() || context.IsOccluded(finger, contact));
       all[t].fits = all[t].fits || !all[t].occluded.back();
     }
     for (int s = 0; s < kFitSamples && !all[t].fits; ++s) {
       const Placement::Contact contact = draw(t, rng);
-      all[t].fits = HasRoom(finger, contact, shape) && !context.IsOccluded(finger, contact);
+      all[t].fits = HasRoom(context.tips().radius(finger), contact, shape) && !context.IsOccluded(finger, contact);
     }
   }
   return all;
@@ -108,7 +108,7 @@ class NodeSampler {
       std::vector<double> scores(begin, begin + config_.samples);
       for (int s = 0; s < config_.samples; ++s) {
         const Placement& placement = placements[index * config_.samples + s];
-        if (!(CalcTipGap(placement) >= 0.0)) scores[s] = 0.0;
+        if (!(CalcTipGap(scorer.tips(), placement) >= 0.0)) scores[s] = 0.0;
       }
       ClearOccluded(scorer, samples_[0][thumb], indices[index], scores);
       means.push_back(Mean(scores));

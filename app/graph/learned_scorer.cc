@@ -65,6 +65,8 @@ class LearnedScorer::FixedState : public PlacementScorer {
     return {scores.data(), scores.data() + scores.size()};
   }
 
+  TipSpheres tips() const override { return owner_.tips_; }
+
   bool IsOccluded(Finger finger, const Placement::Contact& contact) const override {
     return X_WB_ && owner_.IsOccluded(finger, contact, *X_WB_);
   }
@@ -83,6 +85,7 @@ LearnedScorer::LearnedScorer(const ScoreFunction& score, const Scene& scene, Poi
       pool_(pool),
       cloud_(std::move(cloud)),
       gravity_W_(scene.gravity),
+      tips_(scene.tips),
       structure_(score.BuildStructure(cloud_.P, scene.object().X_WB.linear())) {
   for (const Body& body : scene.bodies) X_WB_start_.push_back(body.X_WB);
 }
@@ -92,7 +95,7 @@ std::vector<double> LearnedScorer::Score(std::span<const ScoredState> states) co
   std::vector<ObjectState> seen(count);
   std::vector<PlanningContacts> contacts(count);
   pool_.ParallelFor(count, [&](int i, int) {
-    seen[i] = MakeObjectState(cloud_, states[i].X_WB, environment_, gravity_W_);
+    seen[i] = MakeObjectState(cloud_, states[i].X_WB, environment_, gravity_W_, tips_.radius(Finger::kIndex));
     contacts[i] = MakePlanningContacts(states[i].placement, &states[i].X_WB, environment_);
   });
   const VectorX scores = score_.ScoreStates(structure_, seen, contacts, pool_);
@@ -101,7 +104,7 @@ std::vector<double> LearnedScorer::Score(std::span<const ScoredState> states) co
 
 bool LearnedScorer::IsOccluded(Finger finger, const Placement::Contact& contact,
                                const std::vector<RigidTransform>& X_WB) const {
-  const double radius = FingertipRadius(finger);
+  const double radius = tips_.radius(finger);
   const Vector3 p_WTip = X_WB.front() * Vector3(contact.p_OC + radius * contact.nhat_O);
   return environment_.Calc(p_WTip, X_WB).phi < radius;
 }
@@ -128,7 +131,7 @@ double LearnedScorer::ScoreBestProbes(const ScoredState& state) const {
   }
   if (contacts.empty()) return 0.0;
   const VectorX all = score_.ScoreContacts(
-      structure_, MakeObjectState(cloud_, state.X_WB, environment_, gravity_W_), contacts,
+      structure_, MakeObjectState(cloud_, state.X_WB, environment_, gravity_W_, tips_.radius(Finger::kIndex)), contacts,
       ScoreOutput::kProgress);
   std::vector<double> best(all.data(), all.data() + all.size());
   const auto count = std::min<std::ptrdiff_t>(kBestProbes, std::ssize(best));
@@ -139,7 +142,7 @@ double LearnedScorer::ScoreBestProbes(const ScoredState& state) const {
 std::unique_ptr<PlacementScorer> LearnedScorer::At(const std::vector<RigidTransform>& X_WB,
                                                    ScoreOutput output) const {
   return std::make_unique<FixedState>(
-      *this, MakeObjectState(cloud_, X_WB, environment_, gravity_W_), X_WB, output);
+      *this, MakeObjectState(cloud_, X_WB, environment_, gravity_W_, tips_.radius(Finger::kIndex)), X_WB, output);
 }
 
 std::unique_ptr<PlacementScorer> LearnedScorer::Free() const {

@@ -16,7 +16,7 @@ namespace pregrasp {
 /// @param X_WB  every scene body's pose, the object first.
 ObjectState MakeObjectState(const PointCloud& cloud, const std::vector<RigidTransform>& X_WB,
                             const EnvironmentDistance& environment, const Vector3& gravity_W,
-                            double radius = FingertipRadius(Finger::kIndex));
+                            double radius);
 
 /// The networks' view of a placement. @param X_WB  null for no surroundings.
 PlanningContacts MakePlanningContacts(const Placement& placement,
@@ -62,6 +62,7 @@ class LearnedScorer : public StateScorer {
   ThreadPool& pool_;
   PointCloud cloud_;
   Vector3 gravity_W_;
+  TipSpheres tips_;
   std::vector<RigidTransform> X_WB_start_;
   std::vector<Placement> probes_;
   CloudStructure structure_;

@@ -4,9 +4,9 @@
 
 namespace pregrasp {
 
-bool HasRoom(Finger finger, const Placement::Contact& contact, const SignedDistance& shape) {
-  const Vector3 p_OTip = FingertipCentre(finger, contact.p_OC, contact.nhat_O);
-  return shape.Calc(p_OTip) >= FingertipRadius(finger) - kOwnOverlapAllowed;
+bool HasRoom(double radius, const Placement::Contact& contact, const SignedDistance& shape) {
+  const Vector3 p_OTip = contact.p_OC + radius * contact.nhat_O;
+  return shape.Calc(p_OTip) >= radius - kOwnOverlapAllowed;
 }
 
 Placement::Contact ContactOnTriangle(const TriangleMesh& mesh, int t, const Vector3& w,

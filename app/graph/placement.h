@@ -25,18 +25,19 @@ struct Placement {
 
 /// How far apart the fingertip spheres of a placement with both fingers on are [m]; below 0 they
 /// overlap.
-inline double CalcTipGap(const Placement& placement) {
+inline double CalcTipGap(const TipSpheres& tips, const Placement& placement) {
   const auto centre = [&](Finger finger) {
     const Placement::Contact& contact = placement.fingers[static_cast<int>(finger)];
-    return FingertipCentre(finger, contact.p_OC, contact.nhat_O);
+    return tips.Centre(finger, contact.p_OC, contact.nhat_O);
   };
-  return CalcTipGap(Finger::kThumb, centre(Finger::kThumb), Finger::kIndex, centre(Finger::kIndex));
+  return tips.CalcGap(Finger::kThumb, centre(Finger::kThumb), Finger::kIndex,
+                      centre(Finger::kIndex));
 }
 
-/// Whether the object itself leaves room for the fingertip that touches at the contact: its sphere
-/// overlaps it nowhere by more than kOwnOverlapAllowed. Not so in a hole or a groove narrower than
-/// the tip.
-bool HasRoom(Finger finger, const Placement::Contact& contact, const SignedDistance& shape);
+/// Whether the object itself leaves room for the fingertip of this radius [m] that touches at the
+/// contact: its sphere overlaps it nowhere by more than kOwnOverlapAllowed. Not so in a hole or a
+/// groove narrower than the tip.
+bool HasRoom(double radius, const Placement::Contact& contact, const SignedDistance& shape);
 inline constexpr double kOwnOverlapAllowed = 3e-4;  ///< [m]
 
 /// Judges placements in one state of the world: the score function bound to an object cloud and a
@@ -47,6 +48,9 @@ class PlacementScorer {
 
   /// One score in [0, 1] for each placement.
   virtual std::vector<double> Score(std::span<const Placement> placements) const = 0;
+
+  /// The spheres of the fingers that placements are of.
+  virtual TipSpheres tips() const { return {}; }
 
   /// True where the sphere of a fingertip touching at the contact would overlap the environment.
   virtual bool IsOccluded(Finger finger, const Placement::Contact& contact) const = 0;

@@ -31,7 +31,7 @@ std::vector<Placement::Contact> SampleContacts(Finger finger, const TriangleMesh
     const double u = rng.Uniform(), v = rng.Uniform();
     const Placement::Contact contact =
         ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape);
-    const bool free = !scorer.IsOccluded(finger, contact) && HasRoom(finger, contact, shape);
+    const bool free = !scorer.IsOccluded(finger, contact) && HasRoom(scorer.tips().radius(finger), contact, shape);
     if (free) contacts.push_back(contact);
   }
   return contacts;
@@ -85,7 +85,7 @@ std::vector<Placement> FindPlacements(const TriangleMesh& mesh, const SignedDist
     Placement placement;
     placement.fingers = {draw(0), draw(1)};
     const double span = (placement.thumb().p_OC - placement.index().p_OC).norm();
-    if (CalcTipGap(placement) >= 0.0 && span <= config.max_tip_distance) {
+    if (CalcTipGap(scorer.tips(), placement) >= 0.0 && span <= config.max_tip_distance) {
       candidates.push_back(placement);
     }
   }

@@ -35,8 +35,17 @@ ContactPlaces::ContactPlaces(const GraspWorld& world, const std::vector<RigidTra
                              const TouchSlack& slack, const std::vector<EdgePoint>& edges,
                              double edge_slack)
     : world_(world), X_WB_(X_WB), slack_(slack) {
-  pools_ = {MakePool(Finger::kThumb, edges, edge_slack),
-            MakePool(Finger::kIndex, edges, edge_slack)};
+  const TipSpheres& tips = world_.tips();
+  for (int f = 0; f < tips.count; ++f) {
+    int same = 0;
+    while (tips.radii[same] != tips.radii[f]) ++same;
+    if (same == f) {
+      pool_of_[f] = static_cast<int>(pools_.size());
+      pools_.push_back(MakePool(static_cast<Finger>(f), edges, edge_slack));
+    } else {
+      pool_of_[f] = pool_of_[same];
+    }
+  }
   for (const Pool& pool : pools_) {
     has_edges_ = has_edges_ || (!pool.contact.empty() && pool.contact.back().on_edge);
   }
@@ -45,7 +54,7 @@ ContactPlaces::ContactPlaces(const GraspWorld& world, const std::vector<RigidTra
 ContactPlaces::Pool ContactPlaces::MakePool(Finger finger, const std::vector<EdgePoint>& edges,
                                             double edge_slack) const {
   Pool pool;
-  const double radius = FingertipRadius(finger);
+  const double radius = world_.tips().radius(finger);
   std::vector<std::vector<int>> buckets(27);
   const auto add = [&](const GraspContact& contact) {
     buckets[BucketOf(contact.nhat_O)].push_back(static_cast<int>(pool.contact.size()));
@@ -114,7 +123,7 @@ GraspContact ContactPlaces::At(Finger finger, int place) const {
 }
 
 bool ContactPlaces::Allows(const GraspContact& contact) const {
-  return CanTouch(contact.p_OC, contact.nhat_O, FingertipRadius(contact.finger), slack_,
+  return CanTouch(contact.p_OC, contact.nhat_O, world_.tips().radius(contact.finger), slack_,
                   world_.object(), world_.environment(), X_WB_);
 }
 
@@ -140,7 +149,7 @@ std::vector<int> ContactPlaces::FindWithin(Finger finger, const Vector3& p_O,
   const Pool& pool = PoolOf(finger);
   std::vector<int> found;
   if (pool.contact.empty() || !p_O.allFinite()) return found;
-  const CellRange range = CellsAround(pool, p_O, distance + FingertipRadius(finger));
+  const CellRange range = CellsAround(pool, p_O, distance + world_.tips().radius(finger));
   if (range.empty()) return found;
   for (int i = range.low[0]; i <= range.high[0]; ++i) {
     for (int j = range.low[1]; j <= range.high[1]; ++j) {

@@ -74,12 +74,13 @@ class ContactPlaces {
   Pool MakePool(Finger finger, const std::vector<EdgePoint>& edges, double edge_slack) const;
   static void MakeGrid(Pool& pool);
   static CellRange CellsAround(const Pool& pool, const Vector3& centre, double distance);
-  const Pool& PoolOf(Finger finger) const { return pools_[finger == Finger::kThumb ? 0 : 1]; }
+  const Pool& PoolOf(Finger finger) const { return pools_[pool_of_[static_cast<int>(finger)]]; }
 
   const GraspWorld& world_;
   std::vector<RigidTransform> X_WB_;
   TouchSlack slack_;
-  std::array<Pool, 2> pools_;  // thumb, other fingers
+  std::vector<Pool> pools_;  // one for each size of fingertip
+  std::array<int, kNumFingers> pool_of_{};
   bool has_edges_ = false;
 };
 

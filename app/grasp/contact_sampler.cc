@@ -70,7 +70,7 @@ std::optional<GraspContact> ContactSampler::DrawOpposite(const GraspContact& fro
   if (!places_.has_edges()) return std::nullopt;
   // The tip has no room on that face, but perhaps on an edge of it.
   const int place =
-      places_.DrawNear(finger, FingertipCentre(finger, p_out, along), kBesideOpposite, rng);
+      places_.DrawNear(finger, world_.tips().Centre(finger, p_out, along), kBesideOpposite, rng);
   if (place == ContactPlaces::kNone) return std::nullopt;
   return places_.At(finger, place);
 }
@@ -78,16 +78,17 @@ std::optional<GraspContact> ContactSampler::DrawOpposite(const GraspContact& fro
 bool ContactSampler::Fits(const GraspContact& contact, const std::vector<GraspContact>& placed,
                           const Draw& draw) const {
   const int f = static_cast<int>(contact.finger);
-  const Vector3 centre = TipCentre(contact);
+  const TipSpheres& tips = world_.tips();
+  const Vector3 centre = TipCentre(tips, contact);
   for (const GraspContact& other : placed) {
     const int g = static_cast<int>(other.finger);
-    const double distance = (TipCentre(other) - centre).norm();
+    const double distance = (TipCentre(tips, other) - centre).norm();
     double farthest = world_.reach().farthest[f][g];
     if (draw.near && !IsThumb(contact.finger) && !IsThumb(other.finger)) {
       farthest = std::min(farthest, config_.near_spacing * std::abs(f - g) + config_.near_offset);
     }
     const bool fits = distance >= world_.reach().nearest[f][g] && distance <= farthest &&
-                      CalcTipGap(contact.finger, centre, other.finger, TipCentre(other)) >= 0.0;
+                      tips.CalcGap(contact.finger, centre, other.finger, TipCentre(tips, other)) >= 0.0;
     if (!fits) return false;
   }
   return true;
@@ -110,7 +111,7 @@ std::optional<GraspContact> ContactSampler::DrawContact(Finger finger,
       if (draw.near && !beside.empty()) {
         const GraspContact& other = *beside[rng.UniformInt(beside.size())];
         const int apart = std::abs(static_cast<int>(finger) - static_cast<int>(other.finger));
-        place = places_.DrawNear(finger, TipCentre(other),
+        place = places_.DrawNear(finger, TipCentre(world_.tips(), other),
                                  config_.near_spacing * apart + config_.near_offset, rng);
       } else {
         place = places_.DrawAny(finger, rng);
@@ -130,9 +131,11 @@ std::optional<std::vector<GraspContact>> ContactSampler::Sample(
   // Edges have many directions at each point: without this, hardly a set would keep to faces.
   const bool faces_only = places_.has_edges() && rng.Uniform() < 0.5;
   const std::uint32_t extra = rng.UniformInt(4);  // with ring, with little
+  const TipSpheres& tips = world_.tips();
   std::vector<Finger> fingers{Finger::kMiddle, Finger::kIndex};
-  if (extra & 1) fingers.push_back(Finger::kRing);
-  if (extra & 2) fingers.push_back(Finger::kLittle);
+  if (!tips.has(Finger::kMiddle)) fingers = {Finger::kIndex};
+  if ((extra & 1) && tips.has(Finger::kRing)) fingers.push_back(Finger::kRing);
+  if ((extra & 2) && tips.has(Finger::kLittle)) fingers.push_back(Finger::kLittle);
   fingers.push_back(Finger::kThumb);
 
   std::vector<GraspContact> contacts = fixed;

@@ -86,9 +86,10 @@ Finger FindWorst(const std::array<double, kNumFingers>& values) {
 }
 
 // The first finger that no grasp is without, of those that are not among the contacts.
-std::optional<Finger> FindMissing(const std::vector<GraspContact>& contacts) {
+std::optional<Finger> FindMissing(const TipSpheres& tips,
+                                  const std::vector<GraspContact>& contacts) {
   for (const Finger finger : {Finger::kThumb, Finger::kIndex, Finger::kMiddle}) {
-    if (FindContact(contacts, finger) == nullptr) return finger;
+    if (tips.has(finger) && FindContact(contacts, finger) == nullptr) return finger;
   }
   return std::nullopt;
 }
@@ -100,10 +101,10 @@ GraspFault FindFault(const GraspWorld& world, const GraspConfig& config,
     case GraspStatus::kFeasible:
       break;
     case GraspStatus::kNoPlace:
-      fault.finger = FindMissing(result.contacts);
+      fault.finger = FindMissing(world.tips(), result.contacts);
       break;
     case GraspStatus::kTipsTooClose:
-      fault.tips = FindNearestTips(result.contacts);
+      fault.tips = FindNearestTips(world.tips(), result.contacts);
       break;
     case GraspStatus::kNoInternalForces:
     case GraspStatus::kWeightNotBalanced:
@@ -127,8 +128,9 @@ GraspFault FindFault(const GraspWorld& world, const GraspConfig& config,
 
 bool IsDroppable(Finger finger) { return finger == Finger::kRing || finger == Finger::kLittle; }
 
-std::vector<std::vector<Finger>> DroppableSets(bool may_drop) {
-  if (!may_drop) return {{}};
+std::vector<std::vector<Finger>> DroppableSets(const TipSpheres& tips, bool may_drop) {
+  if (!may_drop || !tips.has(Finger::kRing)) return {{}};
+  if (!tips.has(Finger::kLittle)) return {{}, {Finger::kRing}};
   return {{}, {Finger::kLittle}, {Finger::kRing}, {Finger::kRing, Finger::kLittle}};
 }
 
@@ -188,7 +190,7 @@ std::string Explain(const GraspResult& result) {
 GraspStatus CalcForceStatus(const GraspWorld& world, const GraspConfig& config,
                             const std::vector<GraspContact>& contacts, const Matrix3& R_WO,
                             Vector6* missing) {
-  if (!(FindNearestTips(contacts).gap >= 0.0)) return GraspStatus::kTipsTooClose;
+  if (!(FindNearestTips(world.tips(), contacts).gap >= 0.0)) return GraspStatus::kTipsTooClose;
   Vector6 direction;
   return ToStatus(CalcWrenchStatus(world.ToWrenchContacts(contacts),
                                    world.MakeWrenchConfig(config.f_min, R_WO),
@@ -247,14 +249,14 @@ GraspAttempt TryGrasp(const GraspWorld& world, const GraspConfig& config,
                       const std::vector<GraspContact>& contacts,
                       const std::vector<RigidTransform>& X_WB, Rng rng,
                       const HandConfiguration* warm_start) {
-  if (FindMissing(contacts)) {
+  if (FindMissing(world.tips(), contacts)) {
     GraspAttempt none;
     none.contacts = contacts;
     none.status = GraspStatus::kNoPlace;
     return none;
   }
   std::optional<GraspAttempt> best;
-  for (const std::vector<Finger>& dropped : DroppableSets(config.may_drop)) {
+  for (const std::vector<Finger>& dropped : DroppableSets(world.tips(), config.may_drop)) {
     const std::vector<GraspContact> rest = WithoutFingers(contacts, dropped);
     if (rest.size() + dropped.size() != contacts.size()) continue;  // not among the contacts
     GraspAttempt attempt = TryContacts(world, config, rest, X_WB, rng, warm_start);

@@ -111,7 +111,7 @@ GraspResult TestContacts(const GraspWorld& world, const GraspConfig& config,
 bool IsDroppable(Finger finger);
 /// What may be left out of a generated grasp, in the order in which that is tried: nothing, little,
 /// ring, both.
-std::vector<std::vector<Finger>> DroppableSets(bool may_drop);
+std::vector<std::vector<Finger>> DroppableSets(const TipSpheres& tips, bool may_drop);
 std::vector<GraspContact> WithoutFingers(const std::vector<GraspContact>& contacts,
                                          const std::vector<Finger>& fingers);
 

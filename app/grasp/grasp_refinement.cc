@@ -16,7 +16,7 @@ constexpr double kOvershoot = 1.5;
 
 // The finger that a link belongs to; none for the palm.
 std::optional<Finger> FindFinger(const HandModel& hand, int link) {
-  for (int f = 0; f < kNumFingers; ++f) {
+  for (int f = 0; f < hand.num_fingers; ++f) {
     const int tip = hand.tips[f].link;
     if (link <= tip && link > hand.chain_begin[tip]) return static_cast<Finger>(f);
   }
@@ -120,7 +120,7 @@ bool GraspRefinement::Hold() {
   ContactChoice start = choice_;
   if (holds_.Run(choice_)) return true;
   for (int& place : start) place = std::min(place, 0);
-  for (const std::vector<Finger>& left_out : DroppableSets(config_.grasp.may_drop)) {
+  for (const std::vector<Finger>& left_out : DroppableSets(tips(), config_.grasp.may_drop)) {
     choice_ = start;
     for (std::size_t i = 0; i < choices_.size(); ++i) {
       if (std::find(left_out.begin(), left_out.end(), choices_[i].finger) != left_out.end()) {
@@ -170,7 +170,7 @@ GraspRefinement::Pull GraspRefinement::CalcPull() const {
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     if (choice_[i] == kLeftOut) continue;
     const GraspContact& contact = choices_[i].places[choice_[i]];
-    const Vector3 way = CalcTip(last_->configuration(), contact.finger) - TipCentre(contact);
+    const Vector3 way = CalcTip(last_->configuration(), contact.finger) - TipCentre(tips(), contact);
     pull.way_O[static_cast<int>(contact.finger)] = kOvershoot * way;
   }
   if (last_->closest) {
@@ -208,13 +208,13 @@ void GraspRefinement::FollowHand() {
     if (choice_[i] == kLeftOut || choices_[i].places.size() < 2) continue;
     const ContactChoices& choices = choices_[i];
     const Vector3 wish =
-        TipCentre(choices.places[choice_[i]]) + pull.way_O[static_cast<int>(choices.finger)];
+        TipCentre(tips(), choices.places[choice_[i]]) + pull.way_O[static_cast<int>(choices.finger)];
     double least = std::numeric_limits<double>::infinity();
     int nearest = choice_[i];
     for (int place = 0; place < static_cast<int>(choices.places.size()); ++place) {
-      const double distance = (TipCentre(choices.places[place]) - wish).norm();
+      const double distance = (TipCentre(tips(), choices.places[place]) - wish).norm();
       if (!(distance < least)) continue;
-      if (!HasRoom(choices_, choice_, static_cast<int>(i), place)) continue;
+      if (!HasRoom(tips(), choices_, choice_, static_cast<int>(i), place)) continue;
       least = distance;
       nearest = place;
     }
@@ -240,7 +240,7 @@ void GraspRefinement::Disturb() {
   ContactChoice moved = choice_;
   moved[contact] = static_cast<int>(
       rng_.UniformInt(static_cast<std::uint32_t>(choices_[contact].places.size())));
-  if (FindNearestTips(ToContacts(choices_, moved)).gap >= 0.0) choice_ = moved;
+  if (FindNearestTips(tips(), ToContacts(choices_, moved)).gap >= 0.0) choice_ = moved;
 }
 
 std::optional<HandConfiguration> GraspRefinement::FindNearest(
@@ -250,7 +250,7 @@ std::optional<HandConfiguration> GraspRefinement::FindNearest(
   for (const HandConfiguration& hand : solved) {
     double distance = 0.0;
     for (const GraspContact& contact : ToContacts(choices_, choice_)) {
-      distance += (CalcTip(hand, contact.finger) - TipCentre(contact)).squaredNorm();
+      distance += (CalcTip(hand, contact.finger) - TipCentre(tips(), contact)).squaredNorm();
     }
     if (!(distance < least)) continue;
     least = distance;

@@ -67,6 +67,8 @@ class GraspRefinement {
   std::optional<HandConfiguration> FindNearest(const std::vector<HandConfiguration>& solved) const;
   Vector3 CalcTip(const HandConfiguration& hand, Finger finger) const;
 
+  const TipSpheres& tips() const { return places_.world().tips(); }
+
   const ContactPlaces& places_;
   const RefinementConfig& config_;
   std::vector<GraspContact> projected_;

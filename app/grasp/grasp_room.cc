@@ -61,8 +61,8 @@ GraspRoom::GraspRoom(const GraspWorld& world, const GraspRoomConfig& config, std
 
 double GraspRoom::CalcOverlap(const GraspContact& contact,
                               const std::vector<RigidTransform>& X_WB) const {
-  const double radius = FingertipRadius(contact.finger);
-  const Vector3 p_WTip = X_WB.front() * TipCentre(contact);
+  const double radius = world_.tips().radius(contact.finger);
+  const Vector3 p_WTip = X_WB.front() * TipCentre(world_.tips(), contact);
   const double tip = radius - world_.environment().Calc(p_WTip, X_WB).phi;
   const Matrix3 R_WC = X_WB.front().linear() * FrameFromNormal(contact.nhat_O);
   double link = std::numeric_limits<double>::infinity();

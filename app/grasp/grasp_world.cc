@@ -13,11 +13,11 @@ constexpr double kReachTail = 1e-3;
 
 }  // namespace
 
-TipPair FindNearestTips(const std::vector<GraspContact>& contacts) {
+TipPair FindNearestTips(const TipSpheres& tips, const std::vector<GraspContact>& contacts) {
   TipPair nearest;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      const double gap = CalcTipGap(contacts[k], contacts[i]);
+      const double gap = CalcTipGap(tips, contacts[k], contacts[i]);
       if (gap >= nearest.gap) continue;
       nearest = {{contacts[k].finger, contacts[i].finger}, gap};
       if (std::isnan(gap)) return nearest;
@@ -33,22 +33,22 @@ TipReach MeasureTipReach(const HandModel& hand) {
   Rng rng(0, RngStream::kTipReach);
   HandPose pose;
   for (int sample = 0; sample < kReachPostures; ++sample) {
-    HandJoints q;
-    for (int j = 0; j < kNumHandJoints; ++j) q[j] = rng.Uniform(hand.q_lower[j], hand.q_upper[j]);
+    HandJoints q = HandJoints::Zero();
+    for (int j = 0; j < hand.num_joints; ++j) q[j] = rng.Uniform(hand.q_lower[j], hand.q_upper[j]);
     CalcHandPose(hand, RigidTransform::Identity(), q, &pose);
     std::array<Vector3, kNumFingers> centre;
-    for (int f = 0; f < kNumFingers; ++f) {
+    for (int f = 0; f < hand.num_fingers; ++f) {
       centre[f] = pose.CalcPoint(hand.tips[f].link, hand.tips[f].p_LT);
     }
-    for (int a = 0, pair = 0; a < kNumFingers; ++a) {
-      for (int b = a + 1; b < kNumFingers; ++b) {
+    for (int a = 0, pair = 0; a < hand.num_fingers; ++a) {
+      for (int b = a + 1; b < hand.num_fingers; ++b) {
         distances[pair++].push_back((centre[a] - centre[b]).norm());
       }
     }
   }
   TipReach reach;
-  for (int a = 0, pair = 0; a < kNumFingers; ++a) {
-    for (int b = a + 1; b < kNumFingers; ++b) {
+  for (int a = 0, pair = 0; a < hand.num_fingers; ++a) {
+    for (int b = a + 1; b < hand.num_fingers; ++b) {
       std::vector<double>& sorted = distances[pair++];
       std::sort(sorted.begin(), sorted.end());
       const int tail = static_cast<int>(kReachTail * kReachPostures);
@@ -69,6 +69,7 @@ GraspWorld::GraspWorld(const Scene& scene, const HandModel& hand,
       surface_(MakeSurfacePoints(scene_.object().shape, object_, surface)),
       reach_(MeasureTipReach(hand)) {
   PREGRASP_CHECK(scene_.object().movable());
+  scene_.tips = hand.tip_spheres();
   object_radius_ = CalcRadiusAbout(surface_, scene_.object().mass_properties->p_BoBcm);
 }
 

@@ -31,13 +31,13 @@ inline const GraspContact* FindContact(const std::vector<GraspContact>& contacts
 }
 
 /// Where the fingertip sphere's centre is when it touches the contact.
-inline Vector3 TipCentre(const GraspContact& contact) {
-  return FingertipCentre(contact.finger, contact.p_OC, contact.nhat_O);
+inline Vector3 TipCentre(const TipSpheres& tips, const GraspContact& contact) {
+  return tips.Centre(contact.finger, contact.p_OC, contact.nhat_O);
 }
 
-/// How far apart the fingertip spheres of two contacts are [m]; see the spheres' CalcTipGap.
-inline double CalcTipGap(const GraspContact& a, const GraspContact& b) {
-  return CalcTipGap(a.finger, TipCentre(a), b.finger, TipCentre(b));
+/// How far apart the fingertip spheres of two contacts are [m] (TipSpheres::CalcGap).
+inline double CalcTipGap(const TipSpheres& tips, const GraspContact& a, const GraspContact& b) {
+  return tips.CalcGap(a.finger, TipCentre(tips, a), b.finger, TipCentre(tips, b));
 }
 
 /// Two fingertips of a grasp and how far apart their spheres are [m].
@@ -48,7 +48,7 @@ struct TipPair {
 
 /// The nearest two of all tips; a gap that is not a number counts as the smallest. Infinitely far
 /// apart for less than two contacts.
-TipPair FindNearestTips(const std::vector<GraspContact>& contacts);
+TipPair FindNearestTips(const TipSpheres& tips, const std::vector<GraspContact>& contacts);
 
 /// How near and how far the tip centres of two fingers can be [m], by pairs of Finger.
 struct TipReach {
@@ -68,6 +68,7 @@ class GraspWorld {
 
   const Scene& scene() const { return scene_; }
   const IkSolver& ik() const { return ik_; }
+  const TipSpheres& tips() const { return scene_.tips; }  ///< the hand's
   const SignedDistance& object() const { return object_; }
   const EnvironmentDistance& environment() const { return environment_; }
   const SurfacePoints& surface() const { return surface_; }

@@ -46,11 +46,11 @@ std::vector<GraspContact> ToContacts(const std::vector<ContactChoices>& choices,
   return contacts;
 }
 
-bool HasRoom(const std::vector<ContactChoices>& choices, const ContactChoice& choice, int contact,
-             int place) {
+bool HasRoom(const TipSpheres& tips, const std::vector<ContactChoices>& choices,
+             const ContactChoice& choice, int contact, int place) {
   for (std::size_t i = 0; i < choices.size(); ++i) {
     if (static_cast<int>(i) == contact || choice[i] == kLeftOut) continue;
-    if (!(CalcTipGap(choices[i].places[choice[i]], choices[contact].places[place]) >= 0.0)) {
+    if (!(CalcTipGap(tips, choices[i].places[choice[i]], choices[contact].places[place]) >= 0.0)) {
       return false;
     }
   }
@@ -145,7 +145,7 @@ bool HoldSearch::Improve(ContactChoice& choice) const {
         }
         const double way = choices_[i].moved[place];
         const bool better = trial > best_score || (trial == enough && way < best_way);
-        if (!better || !HasRoom(choices_, choice, static_cast<int>(i), place)) continue;
+        if (!better || !HasRoom(world_.tips(), choices_, choice, static_cast<int>(i), place)) continue;
         best_contact = i;
         best_place = place;
         best_score = trial;

@@ -28,8 +28,8 @@ std::vector<GraspContact> ToContacts(const std::vector<ContactChoices>& choices,
                                      const ContactChoice& choice);
 
 /// Whether the tip of one contact, at one of its places, overlaps none of the others'.
-bool HasRoom(const std::vector<ContactChoices>& choices, const ContactChoice& choice, int contact,
-             int place);
+bool HasRoom(const TipSpheres& tips, const std::vector<ContactChoices>& choices,
+             const ContactChoice& choice, int contact, int place);
 
 /// Moves contacts among their choices until forces hold. Where they do not, the proof is a wrench
 /// that they cannot give: the contact that raises it is moved, to the nearest place that gives

@@ -39,7 +39,7 @@ KinematicResult CalcKinematicFeasibility(const GraspWorld& world, const Kinemati
                                          const std::vector<RigidTransform>& X_WB, Rng rng,
                                          const HandConfiguration* warm_start) {
   KinematicResult result;
-  result.nearest_tips = FindNearestTips(contacts);
+  result.nearest_tips = FindNearestTips(world.tips(), contacts);
   if (!(result.nearest_tips.gap >= 0.0)) {
     result.status = KinematicStatus::kTipsTooClose;
     return result;

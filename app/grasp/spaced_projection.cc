@@ -20,14 +20,18 @@ struct Tip {
   bool fixed = false;
 };
 
-double GapOf(const Tip& a, const Tip& b) { return CalcTipGap(a.contact, b.contact); }
+double GapOf(const TipSpheres& spheres, const Tip& a, const Tip& b) {
+  return CalcTipGap(spheres, a.contact, b.contact);
+}
 
-bool HasRoom(const Tip& a, const Tip& b) { return (a.fixed && b.fixed) || GapOf(a, b) >= kTipRoom; }
+bool HasRoom(const TipSpheres& spheres, const Tip& a, const Tip& b) {
+  return (a.fixed && b.fixed) || GapOf(spheres, a, b) >= kTipRoom;
+}
 
-bool AllHaveRoom(const std::vector<Tip>& tips) {
+bool AllHaveRoom(const TipSpheres& spheres, const std::vector<Tip>& tips) {
   for (std::size_t i = 0; i < tips.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      if (!HasRoom(tips[i], tips[k])) return false;
+      if (!HasRoom(spheres, tips[i], tips[k])) return false;
     }
   }
   return true;
@@ -35,9 +39,9 @@ bool AllHaveRoom(const std::vector<Tip>& tips) {
 
 // From b's tip to a's, unit; where they are one, the way their points differ, else one of five
 // directions along the surface.
-Vector3 CalcDirection(const Tip& a, const Tip& b) {
+Vector3 CalcDirection(const TipSpheres& spheres, const Tip& a, const Tip& b) {
   constexpr double kSame = 1e-6;  // [m]
-  const Vector3 between = TipCentre(a.contact) - TipCentre(b.contact);
+  const Vector3 between = TipCentre(spheres, a.contact) - TipCentre(spheres, b.contact);
   if (between.norm() > kSame) return between.normalized();
   const Vector3& nhat = a.contact.nhat_O;
   Vector3 wished = a.wish - b.wish;
@@ -70,16 +74,17 @@ void PullBack(const ContactPlaces& places, double share, std::vector<Tip>& tips)
 // Pushes overlapping pairs apart in turn, each tip by half, and at first pulls them back between,
 // so that they end close together.
 bool PushApart(const ContactPlaces& places, std::vector<Tip>& tips) {
+  const TipSpheres& spheres = places.world().tips();
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     bool all = true;
     const double pull = kPull * (1.0 - static_cast<double>(sweep) / kPulledSweeps);
     if (pull > 0.0) PullBack(places, pull, tips);
     for (std::size_t i = 0; i < tips.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
-        if (HasRoom(tips[i], tips[k])) continue;
+        if (HasRoom(spheres, tips[i], tips[k])) continue;
         all = false;
-        const double way = kTipRoom + kOvershoot - GapOf(tips[i], tips[k]);
-        const Vector3 direction = CalcDirection(tips[i], tips[k]);
+        const double way = kTipRoom + kOvershoot - GapOf(spheres, tips[i], tips[k]);
+        const Vector3 direction = CalcDirection(spheres, tips[i], tips[k]);
         const double half = tips[i].fixed || tips[k].fixed ? 1.0 : 0.5;
         if (!tips[i].fixed) Push(places, direction, half * way, &tips[i]);
         if (!tips[k].fixed) Push(places, -direction, half * way, &tips[k]);
@@ -87,14 +92,15 @@ bool PushApart(const ContactPlaces& places, std::vector<Tip>& tips) {
     }
     if (all && (pull <= 0.0 || sweep == 0)) return true;
   }
-  return AllHaveRoom(tips);
+  return AllHaveRoom(spheres, tips);
 }
 
 // The place nearest to the tip's wish with room beside `placed`; the tip as it is if there is none.
 Tip PlaceBeside(const ContactPlaces& places, const Tip& tip, const std::vector<Tip>& placed) {
+  const TipSpheres& spheres = places.world().tips();
   const auto has_room = [&](const Tip& trial) {
     return std::all_of(placed.begin(), placed.end(),
-                       [&](const Tip& other) { return HasRoom(trial, other); });
+                       [&](const Tip& other) { return HasRoom(spheres, trial, other); });
   };
   if (has_room(tip)) return tip;
   Tip best = tip;
@@ -124,7 +130,7 @@ std::vector<Tip> PlaceInTurn(const ContactPlaces& places, const std::vector<Tip>
 std::vector<Tip> ProjectEach(const ContactPlaces& places, const GraspPoints& generated,
                              const std::vector<GraspContact>& fixed, bool may_drop) {
   std::vector<Tip> tips;
-  for (int f = 0; f < kNumFingers; ++f) {
+  for (int f = 0; f < places.world().tips().count; ++f) {
     const Finger finger = static_cast<Finger>(f);
     if (const GraspContact* given = FindContact(fixed, finger)) {
       tips.push_back({*given, given->p_OC, given->p_OC, true});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "app/core/check.h"
@@ -61,8 +62,8 @@ std::vector<GraspContact> FindReachableContacts(const GraspWorld& world, const I
   TouchSlack slack;
   slack.environment = kinematics.tip_tolerance;
   slack.object = kinematics.tip_tolerance + kinematics.contact_depth;
-  const double radius = FingertipRadius(Finger::kIndex);
-  static_assert(FingertipRadius(Finger::kIndex) < FingertipRadius(Finger::kThumb));
+  const TipSpheres& tips = world.tips();
+  const double radius = *std::min_element(tips.radii.begin(), tips.radii.begin() + tips.count);
   const SurfacePoints& surface = world.surface();
   std::vector<GraspContact> contacts;
   for (int i = 0; i < surface.P.rows(); ++i) {

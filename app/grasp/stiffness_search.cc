@@ -44,7 +44,7 @@ bool StiffnessSearch::Run(ContactChoice& choice) {
     int tried = 0;
     for (const Move& move : FindMoves(best, *forces)) {
       if (tried == kTried) break;
-      if (!HasRoom(choices_, best, move.contact, move.place)) continue;
+      if (!HasRoom(world_.tips(), choices_, best, move.contact, move.place)) continue;
       ContactChoice moved = best;
       moved[move.contact] = move.place;
       if (CalcForceStatus(world_, config_, ToContacts(choices_, moved), R_WO_) !=

@@ -68,13 +68,19 @@ void AddScene(const Scene& scene, KeyText& out) {
 }
 
 void AddHand(const HandModel& hand, KeyText& out) {
-  for (const HandJoint& joint : hand.joints) {
+  for (int j = 0; j < hand.num_joints; ++j) {
+    const HandJoint& joint = hand.joints[j];
     out << static_cast<double>(joint.parent) << joint.X_PJ << joint.axis << joint.lower
         << joint.upper;
   }
   for (const HandCapsule& capsule : hand.capsules) {
     out << static_cast<double>(capsule.link) << capsule.p_LA << capsule.p_LB << capsule.radius;
   }
+  for (int f = 0; f < hand.num_fingers; ++f) {
+    const Fingertip& tip = hand.tips[f];
+    out << static_cast<double>(tip.link) << tip.p_LT << tip.radius;
+  }
+  for (const auto& [a, b] : hand.self_pairs) out << static_cast<double>(a) << static_cast<double>(b);
 }
 
 void AddConfig(const SurfacePointsConfig& surface, const StartCertificateConfig& config,
@@ -148,7 +154,7 @@ GraspResult ToGrasp(const Json& json) {
   Matrix3 R_WH;
   for (int i = 0; i < 3; ++i) R_WH.row(i) = ToVector3(json.at("R_WH").at(i));
   kinematics.ik.X_WH = MakeTransform(R_WH, ToVector3(json.at("p_WH")));
-  for (int i = 0; i < kNumHandJoints; ++i) kinematics.ik.q[i] = json.at("q").at(i).get<double>();
+  for (int i = 0; i < kMaxHandJoints; ++i) kinematics.ik.q[i] = json.at("q").at(i).get<double>();
   grasp.wrench = wrench;
   grasp.kinematics = kinematics;
   return grasp;

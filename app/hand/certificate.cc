@@ -101,7 +101,7 @@ std::vector<HandCollision> HandCertificate::FindCollisions(const HandConfigurati
   capsules.reserve(num_capsules);
   std::array<int, kMaxHandCapsules> touching_finger;
   touching_finger.fill(-1);
-  for (int f = 0; f < kNumFingers; ++f) {
+  for (int f = 0; f < hand.num_fingers; ++f) {
     if (touch.touching[f]) touching_finger[hand.tips[f].capsule] = f;
   }
   for (int i = 0; i < num_capsules; ++i) {

@@ -89,7 +89,7 @@ void HandObstacles::FindNear(const HandModel& hand, const CapsuleEnds& ends, con
                              const TouchRule& touch, double influence,
                              std::vector<HandDistance>* near) const {
   std::array<bool, kMaxHandCapsules> touches{};
-  for (int f = 0; f < kNumFingers; ++f) touches[hand.tips[f].capsule] = touch.touching[f];
+  for (int f = 0; f < hand.num_fingers; ++f) touches[hand.tips[f].capsule] = touch.touching[f];
   const int num_capsules = static_cast<int>(hand.capsules.size());
   for (std::size_t k = 0; k < parts_.size(); ++k) {
     const Part& part = parts_[k];

@@ -28,8 +28,6 @@ struct HandDistance {
   Vector3 nhat_W = Vector3::UnitZ();
 };
 
-inline constexpr int kMaxHandCapsules = 32;
-
 /// The ends of every capsule's axis in the world.
 struct CapsuleEnds {
   std::array<Vector3, kMaxHandCapsules> p_WA, p_WB;

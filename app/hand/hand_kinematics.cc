@@ -26,7 +26,7 @@ void CalcHandPose(const HandModel& hand, const RigidTransform& X_WH, const HandJ
                   HandPose* pose) {
   pose->R_WL[0] = X_WH.linear();
   pose->p_WL[0] = X_WH.translation();
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < hand.num_joints; ++j) {
     const HandJoint& joint = hand.joints[j];
     const Matrix3& R_WP = pose->R_WL[joint.parent];
     const Matrix3 R_WJ = R_WP * joint.X_PJ.linear();
@@ -82,7 +82,7 @@ HandConfiguration Advance(const HandConfiguration& start, const HandVector& step
   if (angle > 0.0) rotation = Quaternion(Eigen::AngleAxisd(angle, theta / angle));
   const Quaternion q_WH = (rotation * Quaternion(start.X_WH.linear())).normalized();
   end.X_WH = MakeTransform(q_WH, start.X_WH.translation() + step.head<3>());
-  end.q = start.q + step.tail<kNumHandJoints>();
+  end.q = start.q + step.tail<kMaxHandJoints>();
   return end;
 }
 
@@ -91,7 +91,7 @@ HandVector CalcStep(const HandConfiguration& start, const HandConfiguration& end
   step.head<3>() = end.X_WH.translation() - start.X_WH.translation();
   const Eigen::AngleAxisd rotation(Matrix3(end.X_WH.linear() * start.X_WH.linear().transpose()));
   step.segment<3>(3) = rotation.angle() * rotation.axis();
-  step.tail<kNumHandJoints>() = end.q - start.q;
+  step.tail<kMaxHandJoints>() = end.q - start.q;
   return step;
 }
 

@@ -8,9 +8,9 @@ namespace pregrasp {
 
 /// Where every link and joint axis of a hand is.
 struct HandPose {
-  std::array<Matrix3, kNumHandLinks> R_WL;
-  std::array<Vector3, kNumHandLinks> p_WL;
-  std::array<Vector3, kNumHandJoints> axis_W;  ///< joint j passes through p_WL[j + 1]
+  std::array<Matrix3, kMaxHandLinks> R_WL;
+  std::array<Vector3, kMaxHandLinks> p_WL;
+  std::array<Vector3, kMaxHandJoints> axis_W;  ///< joint j passes through p_WL[j + 1]
 
   RigidTransform X_WL(int link) const { return MakeTransform(R_WL[link], p_WL[link]); }
   Vector3 CalcPoint(int link, const Vector3& p_L) const { return R_WL[link] * p_L + p_WL[link]; }
@@ -20,7 +20,7 @@ struct HandPose {
 void CalcHandPose(const HandModel& hand, const RigidTransform& X_WH, const HandJoints& q,
                   HandPose* pose);
 
-using PointJacobian = Eigen::Matrix<double, 3, kNumHandDofs>;
+using PointJacobian = Eigen::Matrix<double, 3, kMaxHandDofs>;
 
 /// d p_W / d(dofs) of the point that is fixed to `link` and now at p_W. The rotation part is the
 /// left one: R_WH(theta) = exp(theta x) R_WH, theta in world axes.

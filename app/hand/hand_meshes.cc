@@ -124,9 +124,97 @@ TriangleMesh FingerKnuckle() {
   return Merge({across, Drum(5.4, 8.2, 0.8)});
 }
 
+// Of the four-finger hand.
+
+TriangleMesh QuadPalm() {
+  const TriangleMesh body = Loft({{-12.0, 0.0, 0.0, 22.0, 11.0, 0.0},
+                                  {-3.0, 0.0, -0.4, 31.0, 12.6, 0.0},
+                                  {10.0, 0.0, -0.5, 40.0, 13.2, 0.0},
+                                  {40.0, 0.0, -0.2, 43.4, 13.2, 0.0},
+                                  {74.0, 0.0, 0.0, 43.2, 12.8, 0.0},
+                                  {88.0, 0.0, 0.0, 41.5, 11.0, 0.0}},
+                                 6.0, 5.0);
+  std::vector<TriangleMesh> parts{body};
+  for (const auto& [x, z] : {std::pair{30.0, 96.0}, std::pair{0.0, 100.0}, std::pair{-30.0, 96.0}}) {
+    parts.push_back(
+        Placed(Fork(6.4, 9.6, z, 7.0, 82.0),
+               MakeTransform(RotationFromRpy({0.0, 0.0, 0.5 * kPi}), Vector3(1e-3 * x, 0.0, 0.0))));
+  }
+  return Merge(parts);
+}
+
+TriangleMesh QuadCushion() {
+  const RigidTransform X_palmar =
+      MakeTransform(RotationFromRpy({0.5 * kPi, 0.0, 0.0}), Vector3(0.0, 0.0, 0.0));
+  const TriangleMesh plate = Placed(
+      Loft({{9.0, -1.0, 58.0, 37.0, 20.0, 4.0}, {14.2, -1.0, 58.0, 35.5, 18.5, 4.0}}, 1.0, 1.6),
+      X_palmar);
+  const TriangleMesh ball =
+      Placed(Loft({{-14.0, 0, 0, 12.6, 12.6, 2.0},
+                   {0.0, 0, 0, 13.2, 13.2, 2.0},
+                   {25.0, 0, 0, 12.8, 12.8, 2.0}},
+                  12.0, 10.0),
+             MakeTransform(RotationFromRpy({0.0, 0.785, 0.0}), Vector3(0.021, -0.009, 0.001)));
+  return Merge({plate, ball});
+}
+
+TriangleMesh QuadWrist() {
+  return Loft({{-50.0, 0, 0, 18.6, 18.2, 2.0},
+               {-32.0, 0, 0, 18.6, 18.0, 2.0},
+               {-20.0, 0, 0, 18.0, 14.6, 2.0},
+               {-6.0, 0, 0, 17.0, 10.0, 2.4}},
+              15.0, 2.0);
+}
+
+// A fingertip of this radius whose sphere's centre is at z.
+TriangleMesh RoundPad(double radius, double z) {
+  return Loft({{4.6, 0, -0.3, 0.82 * radius, 0.80 * radius, 2.2},
+               {9.0, 0, -0.2, 0.95 * radius, 0.94 * radius, 2.2},
+               {0.7 * z, 0, -0.1, 0.985 * radius, 0.975 * radius, 2.1},
+               {z, 0, 0, 0.99 * radius, 0.99 * radius, 2.0},
+               {z + radius, 0, 0, 0.99 * radius, 0.99 * radius, 2.0}},
+              2.0, 0.99 * radius);
+}
+
 }  // namespace
 
-std::vector<std::pair<std::string, TriangleMesh>> BuildHandMeshes() {
+std::vector<std::pair<std::string, TriangleMesh>> BuildFourFingerMeshes() {
+  const TriangleMesh across = Placed(
+      Drum(6.2, 7.6, 0.8), MakeTransform(RotationFromRpy({0.0, 0.0, 0.5 * kPi}), Vector3::Zero()));
+  const TriangleMesh proximal = Phalanx({{7.5, 0, 0, 9.2, 9.0, 3.0},
+                                         {14.0, 0, -0.1, 10.4, 10.2, 3.0},
+                                         {30.0, 0, 0, 10.2, 10.0, 3.0},
+                                         {43.0, 0, 0, 9.4, 9.2, 3.0}},
+                                        50.0, 7.4, 6.0, 8.8);
+  const TriangleMesh middle = Phalanx(
+      {{6.5, 0, 0, 9.0, 8.8, 3.0}, {12.0, 0, -0.1, 10.0, 9.9, 3.0}, {24.0, 0, 0, 9.4, 9.2, 3.0}},
+      31.0, 7.0, 6.0, 8.6);
+  const TriangleMesh thumb_proximal = Phalanx({{7.0, 0, 0, 11.6, 11.4, 2.6},
+                                               {16.0, 0, 0, 13.4, 13.2, 2.6},
+                                               {30.0, 0, 0, 13.0, 12.8, 2.6},
+                                               {38.0, 0, 0, 11.8, 11.6, 2.6}},
+                                              46.0, 8.6, 8.0, 11.0);
+  const TriangleMesh thumb_middle = Phalanx(
+      {{6.5, 0, 0, 10.2, 10.2, 2.8}, {13.0, 0, 0, 12.0, 11.9, 2.8}, {27.0, 0, 0, 11.0, 10.8, 2.8}},
+      35.0, 8.2, 7.0, 10.0);
+  return {
+      {"palm", QuadPalm()},
+      {"cushion", QuadCushion()},
+      {"wrist", QuadWrist()},
+      {"knuckle", Merge({across, Drum(6.2, 9.2, 0.8)})},
+      {"proximal", Merge({proximal, Fork(6.4, 8.9, 0.0, 7.6, 12.0)})},
+      {"joint", Drum(5.8, 8.6, 0.8)},
+      {"middle", middle},
+      {"pad", RoundPad(11.0, 24.0)},
+      {"thumb_base", Ball(13.4)},
+      {"thumb_proximal", thumb_proximal},
+      {"thumb_joint", Drum(6.8, 10.0, 1.0)},
+      {"thumb_middle", thumb_middle},
+      {"thumb_pad", RoundPad(12.5, 27.0)},
+  };
+}
+
+std::vector<std::pair<std::string, TriangleMesh>> BuildShadowMeshes() {
   const TriangleMesh finger_proximal = Phalanx({{6.5, 0, 0, 8.0, 7.8, 3.0},
                                                 {12.0, 0, -0.1, 8.9, 8.8, 3.0},
                                                 {26.0, 0, 0, 8.7, 8.6, 3.0},

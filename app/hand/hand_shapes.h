@@ -17,14 +17,14 @@ struct HandShape {
 };
 
 /// What to draw of a hand: the visuals of its URDF. A mesh that several links use is shared.
-/// @throws InputError  a file that is missing or not as ParseObj wants it.
+/// @throws InputError  for a file that has no triangles.
 std::vector<HandShape> LoadHandShapes(const HandModel& hand);
 
-/// Those of ShadowHand(), read once.
-const std::vector<HandShape>& ShadowHandShapes();
+/// The same, read once in a process for a hand of FindHand, and kept.
+const std::vector<HandShape>& ShapesOf(const HandModel& hand);
 
 /// X_WL of every link.
-std::array<RigidTransform, kNumHandLinks> CalcLinkPoses(const HandModel& hand,
-                                                        const HandConfiguration& configuration);
+std::vector<RigidTransform> CalcLinkPoses(const HandModel& hand,
+                                          const HandConfiguration& configuration);
 
 }  // namespace pregrasp

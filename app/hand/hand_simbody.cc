@@ -39,14 +39,16 @@ SimTK::Body::Rigid MakeBody(const HandLink& link) {
 struct HandSimbody::Impl {
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter{system};
-  std::array<SimTK::MobilizedBodyIndex, kNumHandLinks> bodies;
+  std::array<SimTK::MobilizedBodyIndex, kMaxHandLinks> bodies;
   SimTK::State state;
+  int num_joints = 0;
 };
 
 HandSimbody::HandSimbody(const HandModel& hand) : impl_(std::make_unique<Impl>()) {
+  impl_->num_joints = hand.num_joints;
   impl_->bodies[0] = SimTK::MobilizedBody::Free(impl_->matter.Ground(), MakeBody(hand.links[0]))
                          .getMobilizedBodyIndex();
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < hand.num_joints; ++j) {
     const HandJoint& joint = hand.joints[j];
     // A Pin turns about its z axis: both frames get the rotation that takes z to the joint's axis.
     const RigidTransform X_JA = MakeTransform(FrameFromNormal(joint.axis), Vector3::Zero());
@@ -64,7 +66,7 @@ HandSimbody::HandSimbody(HandSimbody&&) noexcept = default;
 
 void HandSimbody::SetConfiguration(const HandConfiguration& configuration) {
   body(0).setQToFitTransform(impl_->state, ToSimbody(configuration.X_WH));
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < impl_->num_joints; ++j) {
     body(j + 1).setOneQ(impl_->state, 0, configuration.q[j]);
   }
   impl_->system.realize(impl_->state, SimTK::Stage::Position);
@@ -77,13 +79,13 @@ RigidTransform HandSimbody::CalcLinkPose(int link) const {
 PointJacobian HandSimbody::CalcPointJacobian(int link, const Vector3& p_L) const {
   SimTK::Matrix J;
   impl_->matter.calcStationJacobian(impl_->state, impl_->bodies[link], ToSimbody(p_L), J);
-  PointJacobian out;
+  PointJacobian out = PointJacobian::Zero();
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
       out(i, k) = J(i, 3 + k);
       out(i, 3 + k) = J(i, k);
     }
-    for (int j = 0; j < kNumHandJoints; ++j) out(i, 6 + j) = J(i, 6 + j);
+    for (int j = 0; j < impl_->num_joints; ++j) out(i, 6 + j) = J(i, 6 + j);
   }
   return out;
 }
@@ -100,7 +102,7 @@ SimTK::State& HandSimbody::state() { return impl_->state; }
 HandConfiguration HandSimbody::GetConfiguration(const SimTK::State& state) const {
   HandConfiguration out;
   out.X_WH = FromSimbody(body(0).getMobilizerTransform(state));
-  for (int j = 0; j < kNumHandJoints; ++j) out.q[j] = body(j + 1).getOneQ(state, 0);
+  for (int j = 0; j < impl_->num_joints; ++j) out.q[j] = body(j + 1).getOneQ(state, 0);
   return out;
 }
 

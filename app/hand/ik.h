@@ -67,12 +67,12 @@ struct IkProblem {
   std::vector<RigidTransform> X_WB;
   /// The first start, before any random one.
   std::optional<HandConfiguration> warm_start;
-  /// Stay near this configuration; without it, fingers without a contact are drawn to `posture`.
+  /// Stay near this configuration; without it, fingers without a contact are drawn to the
+  /// hand's posture.
   std::optional<HandConfiguration> reference;
   /// Of the reference, against 1 mm of tip error: one unit is 5 cm, half a radian of the wrist,
   /// half a radian of a joint.
   double reference_weight = 1.0;
-  HandJoints posture = RelaxedPosture();
 };
 
 /// kSolved, or the first demand that could not be met: each is searched for without those after it.

@@ -21,7 +21,7 @@ constexpr int kPatience = 4;          // iterations without progress that are a 
 void LimitStep(HandVector* step) {
   const double excess = std::max(
       {step->head<3>().norm() / kMaxStepPosition, step->segment<3>(3).norm() / kMaxStepRotation,
-       step->tail<kNumHandJoints>().cwiseAbs().maxCoeff() / kMaxStepJoint});
+       step->tail<kMaxHandJoints>().cwiseAbs().maxCoeff() / kMaxStepJoint});
   if (excess > 1.0) *step /= excess;
 }
 
@@ -32,7 +32,7 @@ HandVector CalcStep(const IkTerms& terms, const IkPoint& point, const HandMatrix
   A.diagonal() += damping;
   HandVector b = -Jtr;
   const HandJoints& q = point.configuration.q;
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < kMaxHandJoints; ++j) {
     const double descent = -Jtr[6 + j];
     const bool held = (q[j] <= terms.hand.q_lower[j] && descent < 0.0) ||
                       (q[j] >= terms.hand.q_upper[j] && descent > 0.0);

@@ -52,7 +52,7 @@ class Program {
   const HandConfiguration& best() const { return best_; }
 
   void MoveTo(const double* x) {
-    const Eigen::Map<const HandVector> x_new(x, kNumHandDofs);
+    const Eigen::Map<const HandVector> x_new(x, kMaxHandDofs);
     if (evaluations_ > 0 && x_new == x_) return;
     x_ = x_new;
     const HandVector step = x_.cwiseProduct(units_);
@@ -71,7 +71,7 @@ class Program {
   }
 
   double CalcObjective(double* gradient) const {
-    if (gradient != nullptr) Eigen::Map<HandVector>(gradient, kNumHandDofs) = x_;
+    if (gradient != nullptr) Eigen::Map<HandVector>(gradient, kMaxHandDofs) = x_;
     return 0.5 * x_.squaredNorm();
   }
 
@@ -85,7 +85,7 @@ class Program {
         HandVector row = HandVector::Zero();
         AddPointGradient(terms_.hand, point_->pose, contact.link, p_WT,
                          Vector3::Unit(k) / kLengthUnit, &row);
-        Store(row, gradients + (3 * i + k) * kNumHandDofs);
+        Store(row, gradients + (3 * i + k) * kMaxHandDofs);
       }
     }
   }
@@ -108,7 +108,7 @@ class Program {
             kLengthUnit;
         AddDistanceGradient(terms_.hand, point_->pose, *least[i], -1.0 / kLengthUnit, &row);
       }
-      if (gradients != nullptr) Store(row, gradients + i * kNumHandDofs);
+      if (gradients != nullptr) Store(row, gradients + i * kMaxHandDofs);
     }
     for (int i = 0; i < terms_.num_contacts; ++i) {
       const IkTerms::Contact& contact = terms_.contacts[i];
@@ -118,7 +118,7 @@ class Program {
       HandVector row = HandVector::Zero();
       AddDirectionGradient(terms_.hand, point_->pose, contact.link,
                            point_->pose.R_WL[contact.link].col(2), contact.nhat_W, &row);
-      Store(row, gradients + at * kNumHandDofs);
+      Store(row, gradients + at * kMaxHandDofs);
     }
   }
 
@@ -126,7 +126,7 @@ class Program {
   // From the left rotation at the point, in SI units, to x.
   void Store(HandVector row, double* out) const {
     row.segment<3>(3) = (rotation_.transpose() * row.segment<3>(3)).eval();
-    Eigen::Map<HandVector>(out, kNumHandDofs) = row.cwiseProduct(units_);
+    Eigen::Map<HandVector>(out, kMaxHandDofs) = row.cwiseProduct(units_);
   }
 
   const IkTerms& terms_;
@@ -167,15 +167,15 @@ int SolveSlsqp(const IkTerms& terms, IkPoint* point, IkPoint* scratch, bool* imp
   Program program(terms, *point, scratch);
   const HandVector units = HandUnits();
   const HandJoints& q = point->configuration.q;
-  std::vector<double> x(kNumHandDofs, 0.0);
+  std::vector<double> x(kMaxHandDofs, 0.0);
   // Wrist steps beyond these bounds would be another solution, which a fresh start finds better.
-  std::vector<double> lower(kNumHandDofs, -2.0);
-  std::vector<double> upper(kNumHandDofs, 2.0);
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  std::vector<double> lower(kMaxHandDofs, -2.0);
+  std::vector<double> upper(kMaxHandDofs, 2.0);
+  for (int j = 0; j < kMaxHandJoints; ++j) {
     lower[6 + j] = std::min(0.0, (terms.hand.q_lower[j] - q[j]) / units[6 + j]);
     upper[6 + j] = std::max(0.0, (terms.hand.q_upper[j] - q[j]) / units[6 + j]);
   }
-  nlopt::opt optimizer(nlopt::LD_SLSQP, kNumHandDofs);
+  nlopt::opt optimizer(nlopt::LD_SLSQP, kMaxHandDofs);
   optimizer.set_lower_bounds(lower);
   optimizer.set_upper_bounds(upper);
   optimizer.set_min_objective(Objective, &program);

@@ -18,9 +18,9 @@ constexpr double kNearAngle = 0.3;      // [rad]
 
 HandJoints SamplePosture(const IkTerms& terms, Rng& rng) {
   HandJoints q = terms.reference.q;
-  for (int f = 0; f < kNumFingers; ++f) {
+  for (int f = 0; f < terms.hand.num_fingers; ++f) {
     if (!terms.touch.touching[f]) continue;
-    const auto [first, count] = kFingerJoints[f];
+    const auto [first, count] = terms.hand.fingers[f];
     for (int j = first; j < first + count; ++j) {
       q[j] = rng.Uniform(terms.hand.q_lower[j], terms.hand.q_upper[j]);
     }
@@ -57,7 +57,7 @@ RigidTransform AlignPalm(const IkTerms& terms, const HandPose& pose_H, const Mat
 HandConfiguration SampleNear(const HandModel& hand, const HandConfiguration& centre, Rng& rng) {
   HandVector step;
   for (int i = 0; i < 3; ++i) step[i] = rng.Uniform(-kNearPosition, kNearPosition);
-  for (int i = 3; i < kNumHandDofs; ++i) step[i] = rng.Uniform(-kNearAngle, kNearAngle);
+  for (int i = 3; i < kMaxHandDofs; ++i) step[i] = rng.Uniform(-kNearAngle, kNearAngle);
   HandConfiguration near = Advance(centre, step);
   near.q = near.q.cwiseMax(hand.q_lower).cwiseMin(hand.q_upper);
   return near;

@@ -33,7 +33,7 @@ double DistanceResidual(const IkTerms& terms, const HandDistance& near) {
 HandVector CalcDeviation(const IkTerms& terms, const HandConfiguration& configuration) {
   if (terms.has_reference) return CalcStep(terms.reference, configuration);
   HandVector deviation = HandVector::Zero();
-  deviation.tail<kNumHandJoints>() = configuration.q - terms.reference.q;
+  deviation.tail<kMaxHandJoints>() = configuration.q - terms.reference.q;
   return deviation;
 }
 
@@ -53,7 +53,7 @@ IkTerms::IkTerms(const HandModel& hand_in, const HandObstacles* obstacles_in,
   least_cosine = std::cos(DegToRad(config.max_cone_deg));
   for (const IkContact& contact : problem.contacts) {
     const int f = static_cast<int>(contact.finger);
-    PREGRASP_CHECK(!touch.touching[f], FingerName(contact.finger));
+    PREGRASP_CHECK(f < hand.num_fingers && !touch.touching[f], FingerName(contact.finger));
     touch.touching[f] = true;
     const Fingertip& tip = hand.tips[f];
     contacts[num_contacts++] = {contact.finger, tip.link, tip.p_LT,
@@ -66,11 +66,11 @@ IkTerms::IkTerms(const HandModel& hand_in, const HandObstacles* obstacles_in,
     reference_weights = problem.reference_weight * HandUnits().cwiseInverse().cwiseAbs2();
     return;
   }
-  reference.q = problem.posture;
+  reference.q = hand.posture;
   reference_weights.setZero();
-  for (int f = 0; f < kNumFingers; ++f) {
+  for (int f = 0; f < hand.num_fingers; ++f) {
     const double sigma = touch.touching[f] ? kSigmaPostureUsed : kSigmaPosture;
-    reference_weights.segment(6 + kFingerJoints[f].first, kFingerJoints[f].second)
+    reference_weights.segment(6 + hand.fingers[f].first, hand.fingers[f].count)
         .setConstant(1.0 / Square(sigma));
   }
 }

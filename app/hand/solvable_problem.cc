@@ -103,15 +103,15 @@ ShapeWorld MakeShapeWorld(IkObject kind, bool clutter, Rng& rng) {
 
 // Postures between which fingers close.
 HandJoints OpenPosture(const HandModel& hand, Rng& rng) {
-  HandJoints q;
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  HandJoints q = HandJoints::Zero();
+  for (int j = 0; j < hand.num_joints; ++j) {
     const double lower = hand.q_lower[j];
     const double upper = hand.q_upper[j];
     const bool sideways = lower < -0.3 && upper < 0.4;  // abduction
     q[j] = sideways ? 0.3 * rng.Uniform(lower, upper)
                     : lower + rng.Uniform(0.0, 0.3) * (upper - lower);
   }
-  const int thumb = kFingerJoints[0].first;
+  const int thumb = hand.fingers[0].first;
   q[thumb] = rng.Uniform(-0.2, 1.0);
   q[thumb + 1] = rng.Uniform(0.0, 0.6);
   q[thumb + 2] = rng.Uniform(-0.1, 0.1);
@@ -124,7 +124,7 @@ HandJoints OpenPosture(const HandModel& hand, Rng& rng) {
 HandJoints ClosedPosture(const HandModel& hand, const HandJoints& open, Rng& rng) {
   HandJoints q = open;
   for (int f = 0; f < kNumFingers; ++f) {
-    const auto [first, count] = kFingerJoints[f];
+    const auto [first, count] = hand.fingers[f];
     for (int j = first + count - 3; j < first + count; ++j) {
       q[j] = open[j] + rng.Uniform(0.5, 1.0) * (hand.q_upper[j] - open[j]);
     }
@@ -184,7 +184,7 @@ class Closer {
   std::optional<IkContact> Close(Finger finger, const HandJoints& closed,
                                  HandConfiguration* configuration) const {
     constexpr int kSteps = 40;
-    const auto [first, count] = kFingerJoints[static_cast<int>(finger)];
+    const auto [first, count] = hand_.fingers[static_cast<int>(finger)];
     const HandJoints open = configuration->q;
     const auto at = [&](double s) {
       HandConfiguration moved = *configuration;

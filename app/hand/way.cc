@@ -47,7 +47,7 @@ class Piece {
     for (std::size_t i = 0; i < X_begin.size(); ++i) bodies_.emplace_back(X_begin[i], X_end[i]);
     for (std::size_t i = 0; i < hand_.capsules.size(); ++i) {
       travel_[i] =
-          reach_.CalcTravel(hand_, static_cast<int>(i), step_.tail<kNumHandJoints>().cwiseAbs());
+          reach_.CalcTravel(hand_, static_cast<int>(i), step_.tail<kMaxHandJoints>().cwiseAbs());
     }
     return IsStretchClear(0.0, 1.0);
   }

@@ -42,7 +42,7 @@ class HandReach {
  private:
   std::array<double, kMaxHandCapsules> from_palm_{};
   /// From the joint's origin, 0 where the joint does not move the capsule.
-  std::array<std::array<double, kNumHandJoints>, kMaxHandCapsules> from_joint_{};
+  std::array<std::array<double, kMaxHandJoints>, kMaxHandCapsules> from_joint_{};
 };
 
 /// Whether the hand is free of overlap all along a way, with every link, the bodies and itself. By

@@ -1,5 +1,5 @@
-// pregrasp-hand-meshes DIRECTORY: writes the hand's picture meshes as OBJ files, as they stand in
-// assets/hand/meshes.
+// pregrasp-hand-meshes DIRECTORY: writes the hands' picture meshes as OBJ files, as they stand in
+// assets/hands.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -8,15 +8,21 @@
 #include "app/hand/hand_meshes.h"
 
 int main(int argc, char** argv) {
+  using namespace pregrasp;
   if (argc != 2) {
     std::fputs("usage: pregrasp-hand-meshes DIRECTORY\n", stderr);
     return 2;
   }
-  for (const auto& [name, mesh] : pregrasp::BuildHandMeshes()) {
-    std::ofstream out(std::filesystem::path(argv[1]) / (name + ".obj"));
-    out << pregrasp::FormatObj(mesh, 6);
-    if (!out) {
-      std::fprintf(stderr, "%s: cannot write %s.obj\n", argv[1], name.c_str());
+  for (const auto& [hand, meshes] : {std::pair{"shadow_right", BuildShadowMeshes()},
+                                     std::pair{"four_finger", BuildFourFingerMeshes()}}) {
+    const std::filesystem::path folder = std::filesystem::path(argv[1]) / hand / "meshes";
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    for (const auto& [name, mesh] : meshes) {
+      std::ofstream out(folder / (name + ".obj"));
+      out << FormatObj(mesh, 6);
+      if (out) continue;
+      std::fprintf(stderr, "%s: cannot write %s.obj\n", folder.c_str(), name.c_str());
       return 2;
     }
   }

@@ -18,7 +18,7 @@ void SetWorldFacts(StepFacts& facts, const World& world, const WorldState& state
                             body.p_WB, body.q_WB, body.w_WB, body.v_WB});
   }
   facts.fingers.clear();
-  for (int i = 0; i < kNumFingers; ++i) {
+  for (int i = 0; i < world.scene().tips.count; ++i) {
     const FingertipState& tip = state.fingers[i];
     facts.fingers.push_back({static_cast<Finger>(i), tip.on, tip.touching, tip.slipping, tip.p_OC,
                              tip.nhat_O, tip.p_WF, tip.p_WTarget, tip.f_W, tip.slip});

@@ -11,7 +11,7 @@ void SetEndOfTrajectory(Application& a) {
   SetWorldFacts(a.facts, a.job.world(), last.state, last.contacts);
 }
 
-GraspFacts MakeGraspFacts(const JobState& state, int entry) {
+GraspFacts MakeGraspFacts(const HandModel& hand, const JobState& state, int entry) {
   const CompletedGrasp& grasp = state.grasps->grasps[entry - 1];
   const GraspResult& result = grasp.result;
   GraspFacts facts;
@@ -45,7 +45,7 @@ GraspFacts MakeGraspFacts(const JobState& state, int entry) {
   }
   if (result.kinematics) {
     const IkResult& ik = result.kinematics->ik;
-    facts.hand = MakeHandFacts(ik.configuration());
+    facts.hand = MakeHandFacts(hand, ik.configuration());
     facts.tip_error_mm = 1e3 * ik.tip_error;
     facts.clearance_mm = 1e3 * ik.clearance;
   }
@@ -75,7 +75,7 @@ void TakeGrasp(Application& a) {
   a.facts.id = fmt::format("path.{}.{}.{}", a.next.path->rank,
                            grasp.source == GraspSource::kSearch ? "search" : "grasp", grasp.number);
   SetEndOfTrajectory(a);
-  a.facts.details = MakeGraspFacts(a.next, entry);
+  a.facts.details = MakeGraspFacts(a.job.hand(), a.next, entry);
 }
 
 LiftFacts MakeLiftFacts(const Application& a, int number, const LiftResult& lift) {
@@ -105,7 +105,7 @@ LiftFacts MakeLiftFacts(const Application& a, int number, const LiftResult& lift
   facts.neighbour_moved_mm = 1e3 * lift.neighbour_moved;
   facts.neighbour_turned_deg = lift.neighbour_turned_deg;
   facts.hand =
-      MakeHandFacts(a.next.grasps->grasps[number - 1].result.kinematics->ik.configuration());
+      MakeHandFacts(a.job.hand(), a.next.grasps->grasps[number - 1].result.kinematics->ik.configuration());
   return facts;
 }
 

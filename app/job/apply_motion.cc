@@ -56,7 +56,7 @@ void SetFrameFacts(Application& a, const MotionFrameTask& task, const MotionFram
   facts.tip_error_mm = 1e3 * solved.tip_error;
   facts.clearance_mm = 1e3 * solved.clearance;
   facts.simulated_t = task.simulated_t;
-  facts.hand = MakeHandFacts(solved.configuration);
+  facts.hand = MakeHandFacts(a.job.hand(), solved.configuration);
   for (int f = 0; f < kNumFingers; ++f) {
     const Placement::Contact& contact = task.contacts[f];
     if (contact.on) {

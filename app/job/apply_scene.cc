@@ -40,7 +40,7 @@ void FindVerdict(Application& a) {
   // The verdict is that of the scene as it is written, settled or not.
   const JobSetup& setup = a.job.setup();
   a.next.verdict = std::make_shared<const StartCertificate>(
-      FindSceneVerdict(a.job.scene(), *setup.hand, setup.seed, setup.weights, a.job.pool()));
+      FindSceneVerdict(a.job.scene(), a.job.hand(), setup.seed, setup.weights, a.job.pool()));
   const StartCertificate& start = *a.next.verdict;
   a.facts.id = "scene.verdict";
   VerdictFacts facts;

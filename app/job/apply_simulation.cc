@@ -10,12 +10,11 @@
 namespace pregrasp::internal {
 namespace {
 
-Finger ReadFinger(const CommandOptions& options) {
+Finger ReadFinger(const CommandOptions& options, const TipSpheres& tips) {
   const std::string name = options.Text("finger");
-  const auto found = std::find(kFingerNames.begin(), kFingerNames.end(), name);
-  if (found == kFingerNames.end()) {
-    throw InputError("", "finger", "the name of a finger", '"' + name + '"');
-  }
+  const auto end = kFingerNames.begin() + tips.count;
+  const auto found = std::find(kFingerNames.begin(), end, name);
+  if (found == end) throw InputError("", "finger", "the name of a finger of the hand", '"' + name + '"');
   return static_cast<Finger>(found - kFingerNames.begin());
 }
 
@@ -27,13 +26,14 @@ Vector3 ReadPoint(const CommandOptions& options, const char* name) {
 
 void Act(const Command& command, Simulation& simulation) {
   const CommandOptions options(command);
+  const TipSpheres& tips = simulation.world().scene().tips;
   switch (command.verb) {
     case Verb::kTouch:
-      return simulation.Touch(ReadFinger(options), ReadPoint(options, "p_OC"));
+      return simulation.Touch(ReadFinger(options, tips), ReadPoint(options, "p_OC"));
     case Verb::kLetGo:
-      return simulation.Lift(ReadFinger(options));
+      return simulation.Lift(ReadFinger(options, tips));
     case Verb::kMove:
-      return simulation.Move(ReadFinger(options), ReadPoint(options, "p_WTarget"),
+      return simulation.Move(ReadFinger(options, tips), ReadPoint(options, "p_WTarget"),
                              options.Number("seconds"));
     default:
       return simulation.Step(options.Has("steps") ? options.Int("steps")

@@ -40,6 +40,7 @@ bool SameBase(const PlannerConfig& a, const PlannerConfig& b) {
 
 Job::Job(JobSetup setup, int threads) : setup_(std::move(setup)), threads_(threads) {
   setup_.config.Validate();
+  TakeHand(setup_.scene);
   world_ = BuildWorld(setup_.scene);
 }
 
@@ -63,7 +64,7 @@ const RobustWorlds& Job::robust_worlds() {
 std::shared_ptr<const Planner> Job::GetPlanner(const WorldState& start,
                                                const PlannerConfig& config) {
   if (!planner_ || !SamePoses(planner_->start(), start) || !SameBase(planner_->config(), config)) {
-    planner_ = std::make_shared<const Planner>(world_, *setup_.hand, start, config, setup_.seed,
+    planner_ = std::make_shared<const Planner>(world_, hand(), start, config, setup_.seed,
                                                pool(), setup_.weights);
   }
   return planner_;

@@ -13,11 +13,10 @@ namespace pregrasp {
 
 /// What a job is made from. With its commands it is all that a result depends on.
 struct JobSetup {
-  Scene scene;  ///< loaded
+  Scene scene;  ///< loaded; with the hand that it names
   std::uint64_t seed = 1;
   PlannerConfig config;           ///< at the start; commands may change it
   std::filesystem::path weights;  ///< the folder with score.safetensors and generator.safetensors
-  const HandModel* hand = &ShadowHand();  ///< outlives the job
 };
 
 /// What all commands of one job share: the world, built at once; the planner and what it loads,
@@ -31,6 +30,7 @@ class Job {
 
   const JobSetup& setup() const { return setup_; }
   const Scene& scene() const { return world_->scene(); }
+  const HandModel& hand() const { return HandOf(scene()); }
   const World& world() const { return *world_; }
   const std::shared_ptr<const World>& shared_world() const { return world_; }
   ThreadPool& pool();

@@ -123,7 +123,7 @@ Planner::Planner(std::shared_ptr<const World> world, const HandModel& hand, Worl
   scorer->SetProbes(FindProbes(scene().object().shape, config.mesh, *shape_, *scorer, seed));
   scorer_ = scorer;
   grasp_world_ = std::make_shared<const GraspWorld>(scene(), hand);
-  forearm_ = std::make_shared<const Forearm>(scene());
+  forearm_ = std::make_shared<const Forearm>(scene(), hand);
   room_ = std::make_shared<const GraspRoom>(*grasp_world_, GraspRoomConfig{}, seed);
 }
 

@@ -84,7 +84,8 @@ std::vector<Placement> Planner::ChooseConditions(const ContactPlaces& places,
 
 std::vector<GeneratedGrasp> Planner::GenerateGrasps(
     const std::vector<RigidTransform>& X_WB, const std::vector<GraspRequest>& requests) const {
-  const ObjectState seen = MakeObjectState(scorer_->cloud(), X_WB, *environment_, scene().gravity);
+  const ObjectState seen = MakeObjectState(scorer_->cloud(), X_WB, *environment_, scene().gravity,
+                                           scene().tips.radius(Finger::kIndex));
   const EncodedState encoded = generator_->Encode(*generator_structure_, seen);
   std::vector<GeneratedGrasp> grasps;
   for (const GraspRequest& request : requests) {

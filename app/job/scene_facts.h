@@ -78,7 +78,7 @@ struct ContactFacts {
 struct HandFacts {
   Vector3 p_WH = Vector3::Zero();
   Quaternion q_WH = Quaternion::Identity();
-  std::vector<double> joints;  ///< in the order of kHandJointNames
+  std::vector<double> joints;  ///< in the order of HandModel::joints
 
   HandConfiguration configuration() const;
 
@@ -89,7 +89,7 @@ struct HandFacts {
     visit("joints", self.joints);
   }
 };
-HandFacts MakeHandFacts(const HandConfiguration& hand);
+HandFacts MakeHandFacts(const HandModel& model, const HandConfiguration& hand);
 
 /// A fingertip's place on the object.
 struct PlaceFacts {

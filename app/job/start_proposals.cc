@@ -60,10 +60,10 @@ class NodeRequests {
       const Placement::Contact& contact = placement.fingers[static_cast<int>(finger)];
       if (!contact.on) continue;
       if (context_->IsOccluded(finger, contact)) return false;
-      if (!HasRoom(finger, contact, planner_.shape())) return false;
+      if (!HasRoom(planner_.scene().tips.radius(finger), contact, planner_.shape())) return false;
     }
     const bool both = placement.thumb().on && placement.index().on;
-    return !both || CalcTipGap(placement) >= 0.0;
+    return !both || CalcTipGap(planner_.scene().tips, placement) >= 0.0;
   }
 
   const Planner& planner_;

@@ -5,18 +5,18 @@ namespace pregrasp {
 HandConfiguration HandFacts::configuration() const {
   HandConfiguration hand;
   hand.X_WH = MakeTransform(q_WH, p_WH);
-  for (std::size_t j = 0; j < joints.size() && j < kNumHandJoints; ++j) {
+  for (std::size_t j = 0; j < joints.size() && j < kMaxHandJoints; ++j) {
     hand.q[static_cast<Eigen::Index>(j)] = joints[j];
   }
   return hand;
 }
 
-HandFacts MakeHandFacts(const HandConfiguration& hand) {
+HandFacts MakeHandFacts(const HandModel& model, const HandConfiguration& hand) {
   HandFacts facts;
   facts.p_WH = hand.X_WH.translation();
   facts.q_WH = Quaternion(hand.X_WH.linear());
   if (facts.q_WH.w() < 0.0) facts.q_WH.coeffs() = -facts.q_WH.coeffs();
-  facts.joints.assign(hand.q.data(), hand.q.data() + hand.q.size());
+  facts.joints.assign(hand.q.data(), hand.q.data() + model.num_joints);
   return facts;
 }
 

@@ -30,7 +30,7 @@ struct StepFacts {                // NOLINT(bugprone-exception-escape): moving J
   Command command;                ///< what made it, and from which step
   double t = 0.0;                 ///< simulated time [s]
   std::vector<BodyFacts> bodies;  ///< the movable ones, the object first
-  std::vector<FingerFacts> fingers;  ///< all five
+  std::vector<FingerFacts> fingers;  ///< all of the hand
   std::vector<ContactFacts> contacts;
   StepDetails details;
 

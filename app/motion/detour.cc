@@ -255,9 +255,9 @@ class DetourFinder {
       step[3 + i] = spread * rng_.Uniform(-config_.spread_angle, config_.spread_angle);
     }
     HandConfiguration sample = Advance(base, step);
-    const HandJoints open = RelaxedPosture();
-    for (int f = 0; f < kNumFingers; ++f) {
-      const auto [first, count] = kFingerJoints[f];
+    const HandJoints& open = solver_.hand().posture;
+    for (int f = 0; f < solver_.hand().num_fingers; ++f) {
+      const auto [first, count] = solver_.hand().fingers[f];
       if (IsKept(static_cast<Finger>(f))) continue;
       const double ease = rng_.Uniform();
       for (int j = first; j < first + count; ++j) {

@@ -30,13 +30,13 @@ HandRates CalcRates(const HandModel& hand, const HandLimits& limits,
   HandRates rates;
   rates.wrist_speed = before.head<3>().norm();
   rates.wrist_turn_speed = before.segment<3>(3).norm();
-  rates.joint_speed = before.tail<kNumHandJoints>().cwiseAbs().maxCoeff();
+  rates.joint_speed = before.tail<kMaxHandJoints>().cwiseAbs().maxCoeff();
   rates.wrist_acceleration = change.head<3>().norm();
   rates.wrist_turn_acceleration = change.segment<3>(3).norm();
-  rates.joint_acceleration = change.tail<kNumHandJoints>().cwiseAbs().maxCoeff();
+  rates.joint_acceleration = change.tail<kMaxHandJoints>().cwiseAbs().maxCoeff();
   rates.speed_share = std::max(rates.wrist_speed / limits.wrist_speed,
                                rates.wrist_turn_speed / limits.wrist_turn_speed);
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < hand.num_joints; ++j) {
     rates.speed_share =
         std::max(rates.speed_share, std::abs(before[6 + j]) / hand.joints[j].max_speed);
   }

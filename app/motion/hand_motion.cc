@@ -68,7 +68,7 @@ double CalcSeconds(const HandModel& hand, const HandLimits& limits, const HandVe
   double seconds = std::max(
       time(step.head<3>().norm(), limits.wrist_speed, limits.wrist_acceleration),
       time(step.segment<3>(3).norm(), limits.wrist_turn_speed, limits.wrist_turn_acceleration));
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < hand.num_joints; ++j) {
     seconds = std::max(
         seconds, time(std::abs(step[6 + j]), hand.joints[j].max_speed, limits.joint_acceleration));
   }
@@ -185,7 +185,7 @@ MotionFrame HandMotion::SolveApproachStart(const HandConfiguration& first_contac
   std::optional<MotionFrame> best;
   for (std::size_t i = 0; i < directions.size(); ++i) {
     HandConfiguration open = first_contact;
-    open.q = RelaxedPosture();
+    open.q = solver_.hand().posture;
     open.X_WH.translation() += config_.approach_distance * directions[i].normalized();
     const Rng rng = stream(i);
     const MotionFrame start = SolveFrame(task, open, open, config_.frame_starts, rng);

@@ -119,7 +119,7 @@ MotionProblem MakeMotionProblem(std::uint64_t seed) {
         FixedBox("wall", {0.02, 0.4, 0.24}, X_WWall)};
     const Vector3 way = length * Vector3(std::cos(heading), std::sin(heading), 0.0);
     const World world(problem.scene);
-    const IkSolver solver(ShadowHand(), problem.scene);
+    const IkSolver solver(HandOf(problem.scene), problem.scene);
 
     // Stages: thumb and index, then thumb and middle; the truth shows that each is within reach on
     // its own, at the start and, checked here, along the way.

@@ -26,7 +26,7 @@ constexpr int kPatience = 3;        // iterations without progress that are the 
 // coupled with the two after it.
 class BandedSystem {
  public:
-  static constexpr int kSize = 2 * kNumHandDofs;
+  static constexpr int kSize = 2 * kMaxHandDofs;
   using Block = Eigen::Matrix<double, kSize, kSize>;
   using Part = Eigen::Matrix<double, kSize, 1>;
 
@@ -42,28 +42,28 @@ class BandedSystem {
       lower_[k].setZero();
       b_[k].setZero();
     }
-    if (frames_ % 2 == 1) diagonal_.back().diagonal().tail<kNumHandDofs>().setOnes();
+    if (frames_ % 2 == 1) diagonal_.back().diagonal().tail<kMaxHandDofs>().setOnes();
   }
 
   // The entry of rows of frame j and columns of frame i, i <= j <= i + 2. Of i == j the lower half
   // counts.
   auto At(int j, int i) {
     Block& block = j / 2 == i / 2 ? diagonal_[j / 2] : lower_[j / 2];
-    return block.block<kNumHandDofs, kNumHandDofs>(j % 2 * kNumHandDofs, i % 2 * kNumHandDofs);
+    return block.block<kMaxHandDofs, kMaxHandDofs>(j % 2 * kMaxHandDofs, i % 2 * kMaxHandDofs);
   }
-  auto RightSide(int i) { return b_[i / 2].segment<kNumHandDofs>(i % 2 * kNumHandDofs); }
+  auto RightSide(int i) { return b_[i / 2].segment<kMaxHandDofs>(i % 2 * kMaxHandDofs); }
 
   // Adds the damping, holds unknown d of frame i at zero where asked for, and solves. False where
   // it is not positive definite.
-  bool Solve(const HandVector& damping, const std::vector<std::array<bool, kNumHandDofs>>& held,
+  bool Solve(const HandVector& damping, const std::vector<std::array<bool, kMaxHandDofs>>& held,
              std::vector<HandVector>* solution) const {
     std::vector<Block> factor = diagonal_;
     std::vector<Block> below = lower_;
     std::vector<Part> x = b_;
     for (int i = 0; i < frames_; ++i) {
       const int k = i / 2;
-      for (int d = 0; d < kNumHandDofs; ++d) {
-        const int row = i % 2 * kNumHandDofs + d;
+      for (int d = 0; d < kMaxHandDofs; ++d) {
+        const int row = i % 2 * kMaxHandDofs + d;
         factor[k](row, row) += damping[d];
         if (!held[i][d]) continue;
         factor[k].row(row).setZero();
@@ -94,7 +94,7 @@ class BandedSystem {
     }
     solution->resize(frames_);
     for (int i = 0; i < frames_; ++i) {
-      (*solution)[i] = x[i / 2].segment<kNumHandDofs>(i % 2 * kNumHandDofs);
+      (*solution)[i] = x[i / 2].segment<kMaxHandDofs>(i % 2 * kMaxHandDofs);
     }
     return true;
   }
@@ -123,7 +123,7 @@ class Smoother {
     groups_.push_back({0, 3, step * limits.wrist_speed, bend * limits.wrist_acceleration});
     groups_.push_back(
         {3, 3, step * limits.wrist_turn_speed, bend * limits.wrist_turn_acceleration});
-    for (int j = 0; j < kNumHandJoints; ++j) {
+    for (int j = 0; j < hand_.num_joints; ++j) {
       groups_.push_back(
           {6 + j, 1, step * hand_.joints[j].max_speed, bend * limits.joint_acceleration});
     }
@@ -283,9 +283,10 @@ class Smoother {
     held_.assign(count_ - 1, {});
     for (int i = 1; i < count_; ++i) {
       const auto descent = system_.RightSide(i - 1);
-      for (int j = 0; j < kNumHandJoints; ++j) {
+      for (int j = 0; j < kMaxHandJoints; ++j) {
         const double q = motion[i].q[j];
-        held_[i - 1][6 + j] = (q <= hand_.q_lower[j] && descent[6 + j] < 0.0) ||
+        held_[i - 1][6 + j] = j >= hand_.num_joints ||  // no joint of this hand
+                              (q <= hand_.q_lower[j] && descent[6 + j] < 0.0) ||
                               (q >= hand_.q_upper[j] && descent[6 + j] > 0.0);
       }
     }
@@ -297,7 +298,7 @@ class Smoother {
   std::vector<IkResiduals> frames_, middles_;
   std::vector<Group> groups_;
   BandedSystem system_;
-  std::vector<std::array<bool, kNumHandDofs>> held_;
+  std::vector<std::array<bool, kMaxHandDofs>> held_;
 };
 
 }  // namespace

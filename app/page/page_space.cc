@@ -89,9 +89,9 @@ Json PoseJson(const RigidTransform& X) {
           Short(q.x()), Short(q.y()), Short(q.z())};
 }
 
-std::string LinkPoses(const HandConfiguration& hand) {
+std::string LinkPoses(const HandModel& hand, const HandConfiguration& configuration) {
   Packed packed;
-  for (const RigidTransform& X_WL : CalcLinkPoses(ShadowHand(), hand)) packed.AddPose(X_WL);
+  for (const RigidTransform& X_WL : CalcLinkPoses(hand, configuration)) packed.AddPose(X_WL);
   return packed.text();
 }
 
@@ -115,23 +115,23 @@ Json TipsJson(const std::vector<BodyRow::Contact>& contacts, const RigidTransfor
 
 class Space {
  public:
-  explicit Space(const LoadedRun& run) : run_(run) {
+  explicit Space(const LoadedRun& run) : run_(run), model_(HandOf(run.scene)) {
     for (const Body& body : run.scene.bodies) AddBody(body);
-    for (const HandShape& shape : ShadowHandShapes()) AddHandShape(shape);
+    for (const HandShape& shape : ShapesOf(model_)) AddHandShape(shape);
   }
 
   Json Finish(const std::vector<const StepFacts*>& steps) {
     Json fingers = Json::array(), poses = Json::array();
-    for (int f = 0; f < kNumFingers; ++f) {
+    for (int f = 0; f < model_.num_fingers; ++f) {
       const auto finger = static_cast<Finger>(f);
       fingers.push_back({{"name", FingerName(finger)},
                          {"color", CssColor(FingerColor(finger))},
-                         {"radius", FingertipRadius(finger)}});
+                         {"radius", model_.tips[f].radius}});
     }
     for (const StepFacts* step : steps) poses.push_back(step == nullptr ? Json() : StepJson(*step));
     return {
         {"meshes", std::move(meshes_)},  {"bodies", std::move(bodies_)}, {"hand", std::move(hand_)},
-        {"links", kNumHandLinks},        {"upright", UprightJson()},     {"force", ForceJson()},
+        {"links", model_.num_links()},        {"upright", UprightJson()},     {"force", ForceJson()},
         {"fingers", std::move(fingers)}, {"steps", std::move(poses)},    {"film", FilmJson()}};
   }
 
@@ -160,10 +160,8 @@ class Space {
     } else {
       mesh = mesh_of_[shape.mesh.get()] = AddMesh(Slim(*shape.mesh, kHandTriangles));
     }
-    int tip = -1;
-    for (int f = 0; f < kNumFingers; ++f) {
-      if (shape.link == DistalLink(static_cast<Finger>(f))) tip = f;
-    }
+    const std::optional<Finger> finger = model_.FingerOf(shape.link);
+    const int tip = finger ? static_cast<int>(*finger) : -1;
     const auto& [r, g, b, a] = shape.rgba;
     hand_.push_back(
         {{"mesh", mesh}, {"link", shape.link}, {"color", CssColor({r, g, b, a})}, {"tip", tip}});
@@ -205,8 +203,8 @@ class Space {
       hand = &frame->hand;
       for (const auto& place : frame->touching) touching.push_back(static_cast<int>(place.finger));
     }
-    if (hand != nullptr && hand->joints.size() == kNumHandJoints) {
-      json["hand"] = LinkPoses(hand->configuration());
+    if (hand != nullptr && std::ssize(hand->joints) == model_.num_joints) {
+      json["hand"] = LinkPoses(model_, hand->configuration());
       json["on"] = touching;
     }
     for (const FingerFacts& finger : step.fingers) {
@@ -229,12 +227,12 @@ class Space {
       for (std::size_t i = 0; i < film.size(); i += stride) {
         times.push_back(Short(film[i].motion.t));
         for (const RigidTransform& X_WB : film[i].X_WB) bodies.AddPose(X_WB);
-        for (const auto& X_WL : CalcLinkPoses(ShadowHand(), film[i].motion.hand)) {
+        for (const auto& X_WL : CalcLinkPoses(model_, film[i].motion.hand)) {
           hand.AddPose(X_WL);
         }
         phases.push_back(MotionPhaseName(film[i].motion.phase));
         int bits = 0;
-        for (int f = 0; f < kNumFingers; ++f) bits |= film[i].motion.on[f] ? 1 << f : 0;
+        for (int f = 0; f < model_.num_fingers; ++f) bits |= film[i].motion.on[f] ? 1 << f : 0;
         on.push_back(bits);
         fingers.push_back(TipsJson(film[i].contacts, film[i].X_WB[0]));
       }
@@ -260,6 +258,7 @@ class Space {
   }
 
   const LoadedRun& run_;
+  const HandModel& model_;
   Json meshes_ = Json::array(), bodies_ = Json::array(), hand_ = Json::array();
   std::map<const TriangleMesh*, int> mesh_of_;
 };

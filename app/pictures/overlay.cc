@@ -25,19 +25,18 @@ RenderLegend ScoreLegend(const std::string& title, double low, double high) {
   return legend;
 }
 
-void AppendHand(MatrixX3& points, const HandConfiguration& hand) {
-  const auto X_WL = CalcLinkPoses(ShadowHand(), hand);
-  const Eigen::Index at = points.rows();
-  points.conservativeResize(at + kNumHandLinks, 3);
-  for (int link = 0; link < kNumHandLinks; ++link) {
-    points.row(at + link) = X_WL[link].translation().transpose();
+void AppendHand(MatrixX3& points, const HandModel& hand, const HandConfiguration& configuration) {
+  for (const RigidTransform& X_WL : CalcLinkPoses(hand, configuration)) {
+    points.conservativeResize(points.rows() + 1, 3);
+    points.bottomRows<1>() = X_WL.translation().transpose();
   }
 }
 
 // The overlay of each kind of step.
 class Maker {
  public:
-  Maker(const StepFacts& step, const FactsSource& steps) : step_(step), steps_(steps) {}
+  Maker(const StepFacts& step, const FactsSource& steps, const HandModel& hand)
+      : step_(step), steps_(steps), hand_(hand) {}
 
   PictureOverlay Make() const {
     return std::visit([this](const auto& details) { return Show(details); }, step_.details);
@@ -138,9 +137,9 @@ class Maker {
     overlay.legend.swatches.emplace_back(FingerColor(finger), FingerName(finger));
   }
 
-  static void SetHand(PictureOverlay& overlay, const HandFacts& hand) {
+  void SetHand(PictureOverlay& overlay, const HandFacts& hand) const {
     overlay.hand = hand.configuration();
-    AppendHand(overlay.focus_W, *overlay.hand);
+    AppendHand(overlay.focus_W, hand_, *overlay.hand);
   }
 
   // What every picture of a motion shows, so that they have one camera: the hand at the keyframes
@@ -150,7 +149,7 @@ class Maker {
     MatrixX3 focus_W(0, 3);
     for (const StepFacts* at = &step_;; at = &steps_.Get(at->command.node)) {
       if (at->command.verb == Verb::kKeyframe) {
-        AppendHand(focus_W, std::get<FrameFacts>(at->details).hand.configuration());
+        AppendHand(focus_W, hand_, std::get<FrameFacts>(at->details).hand.configuration());
       }
       if (at->stage() != "motion") break;
     }
@@ -163,6 +162,7 @@ class Maker {
 
   const StepFacts& step_;
   const FactsSource& steps_;
+  const HandModel& hand_;
 };
 
 // What one grasp or lift of a path has in common with others that look alike.
@@ -185,8 +185,8 @@ bool IsFirstOfItsKind(const StepFacts& step, const FactsSource& steps) {
 
 }  // namespace
 
-PictureOverlay MakeOverlay(const StepFacts& step, const FactsSource& steps) {
-  return Maker(step, steps).Make();
+PictureOverlay MakeOverlay(const StepFacts& step, const FactsSource& steps, const HandModel& hand) {
+  return Maker(step, steps, hand).Make();
 }
 
 const StepFacts& FindStart(const StepFacts& step, const FactsSource& steps) {

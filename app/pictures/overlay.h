@@ -30,7 +30,8 @@ struct PictureOverlay {
   MatrixX3 focus_W = MatrixX3(0, 3);
 };
 
-PictureOverlay MakeOverlay(const StepFacts& step, const FactsSource& steps);
+/// @param hand  of the steps.
+PictureOverlay MakeOverlay(const StepFacts& step, const FactsSource& steps, const HandModel& hand);
 
 /// Where what led to `step` began: the scene's start, settled or not.
 const StepFacts& FindStart(const StepFacts& step, const FactsSource& steps);

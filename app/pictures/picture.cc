@@ -66,7 +66,10 @@ void PictureConfig::Validate() const {
 }
 
 struct PictureMaker::Impl {
+  explicit Impl(Scene the_scene) : scene(std::move(the_scene)), hand(HandOf(scene)) {}
+
   Scene scene;
+  const HandModel& hand;
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  // one a body
   Vector3 up_W;                                             // against gravity
   Matrix3 R_UW;                                             // to a frame U in which that is +z
@@ -88,8 +91,7 @@ struct PictureMaker::Impl {
                 const Rgba& color, const std::string& name) const;
 };
 
-PictureMaker::PictureMaker(Scene loaded) : impl_(std::make_unique<Impl>()) {
-  impl_->scene = std::move(loaded);
+PictureMaker::PictureMaker(Scene loaded) : impl_(std::make_unique<Impl>(std::move(loaded))) {
   const Scene& scene = impl_->scene;
   for (const Body& body : scene.bodies) {
     impl_->meshes.push_back(std::make_shared<const TriangleMesh>(Tessellate(body.shape)));
@@ -109,10 +111,10 @@ PictureMaker::~PictureMaker() = default;
 
 namespace {
 
-MatrixX3 LinkOrigins(const HandFacts& hand) {
-  const auto X_WL = CalcLinkPoses(ShadowHand(), hand.configuration());
-  MatrixX3 origins(kNumHandLinks, 3);
-  for (int link = 0; link < kNumHandLinks; ++link) {
+MatrixX3 LinkOrigins(const HandModel& model, const HandFacts& hand) {
+  const auto X_WL = CalcLinkPoses(model, hand.configuration());
+  MatrixX3 origins(std::ssize(X_WL), 3);
+  for (int link = 0; link < model.num_links(); ++link) {
     origins.row(link) = X_WL[link].translation().transpose();
   }
   return origins;
@@ -187,7 +189,7 @@ void PictureMaker::Impl::AddOverlay(RenderScene& picture, const PictureOverlay& 
   for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
     AddGhost(picture, ghost.X_WO, ghost.color);
   }
-  if (overlay.hand) AddHand(picture, *overlay.hand, overlay.touching);
+  if (overlay.hand) AddHand(picture, hand, *overlay.hand, overlay.touching);
   picture.legend = overlay.legend;
 }
 
@@ -208,7 +210,7 @@ void PictureMaker::Impl::AddFinger(RenderScene& picture, const StepFacts& step,
   const Vector3 nhat_W = step.object().q_WB * finger.nhat_O;
   const Vector3 to_viewer_W = (picture.camera.p_WCam - finger.p_WF).normalized();
   if (config.fingers) {
-    for (RenderBody& body : MakeFingerStub(finger.finger, finger.p_WF, nhat_W, to_viewer_W)) {
+    for (RenderBody& body : MakeFingerStub(finger.finger, scene.tips.radius(finger.finger), finger.p_WF, nhat_W, to_viewer_W)) {
       picture.bodies.push_back(std::move(body));
     }
   }
@@ -264,7 +266,7 @@ void AddContactArrows(RenderScene& picture, const std::vector<ContactFacts>& con
 RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& steps,
                                   const PictureText& text, const PictureConfig& config) const {
   config.Validate();
-  const PictureOverlay overlay = Chosen(MakeOverlay(step, steps), config);
+  const PictureOverlay overlay = Chosen(MakeOverlay(step, steps, impl_->hand), config);
   const Scene& scene = impl_->scene;
   RenderScene picture;
   picture.camera = impl_->ChooseCamera(config, step, overlay);
@@ -308,10 +310,10 @@ CameraConfig PictureMaker::FrameSteps(const std::vector<const StepFacts*>& shown
   if (impl_->scene.camera && !view) return *impl_->scene.camera;
   MatrixX3 focus_U = impl_->start_focus_U;
   for (const StepFacts* step : shown) {
-    PictureOverlay overlay = Chosen(MakeOverlay(*step, steps), config);
+    PictureOverlay overlay = Chosen(MakeOverlay(*step, steps, impl_->hand), config);
     // Of the hand's motion what touches: the hand comes from far off.
     if (const auto* frame = std::get_if<FrameFacts>(&step->details)) {
-      overlay.focus_W = frame->touching.empty() ? MatrixX3(0, 3) : LinkOrigins(frame->hand);
+      overlay.focus_W = frame->touching.empty() ? MatrixX3(0, 3) : LinkOrigins(impl_->hand, frame->hand);
     }
     // Corners of a box do: a mesh may have any number of points.
     const MatrixX3 seen_U = impl_->FindFocus(*step, overlay) * impl_->R_UW.transpose();

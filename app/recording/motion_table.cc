@@ -27,14 +27,14 @@ MotionPhase ReadPhase(const std::string& where, const std::string& word) {
   throw InputError(where, "phase", "approach, contact, transit, closing or lift", word);
 }
 
-MotionRecord ReadRow(const std::string& where, const std::string& line) {
+MotionRecord ReadRow(const HandModel& hand, const std::string& where, const std::string& line) {
   internal::CellReader cells(where, line);
   MotionRecord record;
   record.t = cells.NextNumber();
   record.X_WO = cells.NextPose();
   record.hand.X_WH = cells.NextPose();
-  for (int j = 0; j < kNumHandJoints; ++j) record.hand.q[j] = cells.NextNumber();
-  for (bool& on : record.on) on = cells.NextChoice(1) == 1;
+  for (int j = 0; j < hand.num_joints; ++j) record.hand.q[j] = cells.NextNumber();
+  for (int f = 0; f < hand.num_fingers; ++f) record.on[f] = cells.NextChoice(1) == 1;
   record.phase = ReadPhase(where, cells.NextWord("a phase"));
   record.clearance_mm = cells.NextNumber();
   record.tip_error_mm = cells.NextNumber();
@@ -46,21 +46,21 @@ MotionRecord ReadRow(const std::string& where, const std::string& line) {
 
 }  // namespace
 
-std::string MotionHeader() {
+std::string MotionHeader(const HandModel& hand) {
   std::string header = "t";
   AppendPoseNames(header, "O");
   AppendPoseNames(header, "H");
-  for (const char* joint : kHandJointNames) header.append(",").append(joint);
-  for (const char* finger : kFingerNames) header.append(",").append(finger).append("_on");
+  for (int j = 0; j < hand.num_joints; ++j) header.append(",").append(hand.joints[j].name);
+  for (int f = 0; f < hand.num_fingers; ++f) header.append(",").append(kFingerNames[f]).append("_on");
   return header + ",phase,clearance_mm,tip_error_mm,loosened,simulated_t\n";
 }
 
-std::string MotionRow(const MotionFrameTask& task, const MotionFrame& frame) {
+std::string MotionRow(const HandModel& hand, const MotionFrameTask& task, const MotionFrame& frame) {
   std::string row = FormatDouble(task.t);
   AppendCells(row, task.X_WB.front());
   AppendCells(row, frame.configuration.X_WH);
-  for (int j = 0; j < kNumHandJoints; ++j) AppendCell(row, frame.configuration.q[j]);
-  for (const Placement::Contact& contact : task.contacts) row.append(contact.on ? ",1" : ",0");
+  for (int j = 0; j < hand.num_joints; ++j) AppendCell(row, frame.configuration.q[j]);
+  for (int f = 0; f < hand.num_fingers; ++f) row.append(task.contacts[f].on ? ",1" : ",0");
   row.append(",").append(MotionPhaseName(task.phase));
   AppendCell(row, 1e3 * frame.clearance);
   AppendCell(row, 1e3 * frame.tip_error);
@@ -70,16 +70,17 @@ std::string MotionRow(const MotionFrameTask& task, const MotionFrame& frame) {
   return row + '\n';
 }
 
-std::vector<MotionRecord> ReadMotionTable(const std::filesystem::path& file) {
+std::vector<MotionRecord> ReadMotionTable(const std::filesystem::path& file,
+                                          const HandModel& hand) {
   std::istringstream lines(ReadFile(file));
   std::string line;
   std::getline(lines, line);
-  if (line + '\n' != MotionHeader()) {
-    throw InputError(file.string() + ":1", "", "the header of a motion.csv", OneLine(line));
+  if (line + '\n' != MotionHeader(hand)) {
+    throw InputError(file.string() + ":1", "", "the header of a motion.csv of this hand", OneLine(line));
   }
   std::vector<MotionRecord> records;
   for (int number = 2; std::getline(lines, line); ++number) {
-    records.push_back(ReadRow(file.string() + ':' + std::to_string(number), line));
+    records.push_back(ReadRow(hand, file.string() + ':' + std::to_string(number), line));
   }
   return records;
 }

@@ -73,7 +73,7 @@ std::string RolloutRow(const WorldState& state) {
 
 std::string LiftHeader(const Scene& scene) {
   std::string header = BodyHeader(scene);
-  for (int f = 0; f < kNumFingers; ++f) {
+  for (int f = 0; f < scene.tips.count; ++f) {
     AppendFingerNames(header, f);
     header.append(",").append(kFingerNames[f]).append("_k");
     header.append(",").append(kFingerNames[f]).append("_b");
@@ -81,9 +81,10 @@ std::string LiftHeader(const Scene& scene) {
   return header + '\n';
 }
 
-std::string LiftRow(const WorldState& state) {
+std::string LiftRow(const Scene& scene, const WorldState& state) {
   std::string row = BodyColumns(state);
-  for (const FingertipState& finger : state.fingers) {
+  for (int f = 0; f < scene.tips.count; ++f) {
+    const FingertipState& finger = state.fingers[f];
     AppendFinger(row, finger);
     AppendCell(row, finger.stiffness);
     AppendCell(row, finger.damping);
@@ -112,7 +113,7 @@ std::vector<BodyRow> ReadBodyRows(const std::filesystem::path& file, const Scene
       row.X_WB.push_back(cells.NextPose());
       for (int velocity = 0; velocity < 2; ++velocity) cells.NextVector();
     }
-    for (int f = 0; f < (of_plan ? kNumPlanningFingers : kNumFingers); ++f) {
+    for (int f = 0; f < (of_plan ? kNumPlanningFingers : scene.tips.count); ++f) {
       const bool on = cells.NextNumber() != 0.0;
       BodyRow::Contact contact{static_cast<Finger>(f)};
       contact.p_OC = cells.NextVector();

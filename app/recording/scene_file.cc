@@ -10,6 +10,7 @@
 #include "app/core/json_text.h"
 #include "app/core/json_values.h"
 #include "app/geometry/obj_text.h"
+#include "app/hand/hand_model.h"
 #include "app/recording/checked_file.h"
 
 namespace pregrasp {
@@ -176,6 +177,25 @@ Json FingertipsToJson(const Scene& scene) {
           {"damping_N_s_per_m", b},      {"grasp_stiffness", tips.grasp_stiffness}};
 }
 
+Json HandToJson(const Scene& scene) {
+  const HandModel& hand = HandOf(scene);
+  Json joints = Json::array(), tips = Json::array();
+  for (int j = 0; j < hand.num_joints; ++j) joints.push_back(hand.joints[j].name);
+  for (int f = 0; f < hand.num_fingers; ++f) {
+    tips.push_back({{"finger", kFingerNames[f]}, {"radius", hand.tips[f].radius}});
+  }
+  return {{"name", scene.hand}, {"sha256", hand.sha256}, {"joints", joints}, {"tips", tips}};
+}
+
+// A run shows and moves the hand that it was planned with, or none.
+void ReadHand(const JsonReader& reader, Scene& scene) {
+  scene.hand = reader["name"].Text();
+  if (HandOf(scene).sha256 != reader["sha256"].Text()) {
+    reader["sha256"].Fail("that of the hand \"" + scene.hand + "\" as it is now, " +
+                          HandOf(scene).sha256);
+  }
+}
+
 }  // namespace
 
 void WriteScene(const std::filesystem::path& directory, const Scene& scene, double dt) {
@@ -188,6 +208,7 @@ void WriteScene(const std::filesystem::path& directory, const Scene& scene, doub
                      {"gravity", pregrasp::ToJson(scene.gravity)},
                      {"dt", dt},
                      {"fingertips", FingertipsToJson(scene)},
+                     {"hand", HandToJson(scene)},
                      {"camera", scene.camera ? CameraToJson(*scene.camera) : Json()},
                      {"bodies", std::move(bodies)}};
   WriteFile(directory / "scene.json", FormatJsonIndented(json));
@@ -209,6 +230,8 @@ Scene LoadScene(const std::filesystem::path& file) {
     scene.camera = CameraConfig{camera["p_WCam"].Vec3(), camera["p_WTarget"].Vec3(),
                                 camera["fov_deg"].Number()};
   }
+  if (document.contains("hand")) ReadHand(reader["hand"], scene);  // without, the default
+  TakeHand(scene);
   const JsonReader bodies = reader["bodies"];
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     scene.bodies.push_back(ReadBody(bodies[i], i == 0, file.parent_path()));

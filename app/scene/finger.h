@@ -6,34 +6,40 @@
 
 namespace pregrasp {
 
-/// The five fingers of a right hand, in the paper's order. The planner's contact states use the
-/// first two.
+/// The fingers of a hand, in the paper's order: a hand with fewer has the first of them. The
+/// planner's contact states use the first two.
 enum class Finger { kThumb = 0, kIndex = 1, kMiddle = 2, kRing = 3, kLittle = 4 };
 
-inline constexpr int kNumFingers = 5;
+inline constexpr int kNumFingers = 5;  ///< at most
+inline constexpr int kLeastFingers = 2;
 inline constexpr int kNumPlanningFingers = 2;  ///< thumb and index
 inline constexpr std::array<const char*, kNumFingers> kFingerNames{"thumb", "index", "middle",
                                                                    "ring", "little"};
 
 inline const char* FingerName(Finger finger) { return kFingerNames[static_cast<int>(finger)]; }
 
-/// Radius [m] of the sphere that stands for a fingertip in every test: occlusion, clearance,
-/// inverse kinematics. Its centre is (0, 0, .0209) in the distal frame; for the thumb (0, 0, .024).
-inline constexpr double FingertipRadius(Finger finger) {
-  return finger == Finger::kThumb ? 0.0109 : 0.0090;
-}
+/// The spheres that stand for a hand's fingertips in every test: occlusion, clearance, inverse
+/// kinematics.
+struct TipSpheres {
+  int count = kNumFingers;  ///< the hand's fingers: the first of Finger
+  /// By Finger [m]; those of the Shadow Hand unless a scene has another (TakeHand).
+  std::array<double, kNumFingers> radii{0.0109, 0.0090, 0.0090, 0.0090, 0.0090};
 
-/// The centre of the fingertip sphere that touches p_C from outside, where the outward unit normal
-/// is nhat. Both in any one frame, as the result.
-inline Vector3 FingertipCentre(Finger finger, const Vector3& p_C, const Vector3& nhat) {
-  return p_C + FingertipRadius(finger) * nhat;
-}
+  double radius(Finger finger) const { return radii[static_cast<int>(finger)]; }
+  bool has(Finger finger) const { return static_cast<int>(finger) < count; }
 
-/// How far apart two fingertip spheres are [m], by their centres in any one frame. Below 0 they
-/// overlap, which no hand can do (design, section 4): this is what spacing means for contact nodes,
-/// plans, generated grasps and search alike.
-inline double CalcTipGap(Finger a, const Vector3& p_TipA, Finger b, const Vector3& p_TipB) {
-  return (p_TipA - p_TipB).norm() - FingertipRadius(a) - FingertipRadius(b);
-}
+  /// The centre of the sphere that touches p_C from outside, where the outward unit normal is nhat.
+  /// Both in any one frame, as the result.
+  Vector3 Centre(Finger finger, const Vector3& p_C, const Vector3& nhat) const {
+    return p_C + radius(finger) * nhat;
+  }
+
+  /// How far apart two spheres are [m], by their centres in any one frame. Below 0 they overlap,
+  /// which no hand can do (design, section 4): this is what spacing means for contact nodes, plans,
+  /// generated grasps and search alike.
+  double CalcGap(Finger a, const Vector3& p_TipA, Finger b, const Vector3& p_TipB) const {
+    return (p_TipA - p_TipB).norm() - radius(a) - radius(b);
+  }
+};
 
 }  // namespace pregrasp

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/core/math.h"
+#include "app/scene/finger.h"
 #include "app/scene/shape.h"
 
 namespace pregrasp {
@@ -61,6 +62,8 @@ struct Scene {
   std::string name;
   std::vector<Body> bodies;
   FingertipConfig fingertips;
+  std::string hand = "shadow_right";  ///< a name below assets/hands, or a file (hand_model.h)
+  TipSpheres tips;                    ///< that hand's
   Vector3 gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
   std::optional<CameraConfig> camera;
   std::string file;   ///< the scene file, as given; empty for a scene built in a script

@@ -83,6 +83,7 @@ void AddBody(Setters& setters, const std::string& prefix, Body& body) {
 Setters SettersOf(Scene& scene) {
   Setters setters;
   setters["name"] = SetText(scene.name);
+  setters["hand"] = SetText(scene.hand);
   setters["gravity"] = SetVector(scene.gravity, kGravityRange);
   AddBody(setters, "object", scene.object());
   for (std::size_t i = 1; i < scene.bodies.size(); ++i) {

@@ -17,7 +17,7 @@ struct Setting {
 /// @throws InputError("--set") without a key or a value.
 Setting ParseSetting(const std::string& assignment);
 
-/// Applies those that name a part of the scene, and takes them out of the list: name;
+/// Applies those that name a part of the scene, and takes them out of the list: name; hand;
 /// object.{name,mass,friction,p,rpy_deg}; environment.NAME.{the same}; fingertips.{friction,
 /// max_force,stiffness,damping,grasp_stiffness}; gravity; camera.{p,look_at,fov_deg}. To be called
 /// before the scene's shapes are loaded, so that a new mass also means a new inertia.

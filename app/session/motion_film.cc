@@ -26,7 +26,7 @@ std::vector<FilmFrame> ReadFilm(const LoadedRun& run) {
     for (BodyRow& row : ReadBodyRows(lift, run.scene)) rows.push_back(std::move(row));
   }
   std::vector<FilmFrame> frames;
-  for (const MotionRecord& motion : ReadMotionTable(table)) {
+  for (const MotionRecord& motion : ReadMotionTable(table, HandOf(run.scene))) {
     const auto row =
         std::lower_bound(rows.begin(), rows.end(), motion.simulated_t - 1e-9,
                          [](const BodyRow& at, double simulated_t) { return at.t < simulated_t; });
@@ -69,7 +69,7 @@ StepFacts FrameStep(const LoadedRun& run, const std::vector<FilmFrame>& film, in
   facts.tip_error_mm = motion.tip_error_mm;
   facts.clearance_mm = motion.clearance_mm;
   facts.simulated_t = motion.simulated_t;
-  facts.hand = MakeHandFacts(motion.hand);
+  facts.hand = MakeHandFacts(HandOf(run.scene), motion.hand);
   for (int f = 0; f < kNumFingers; ++f) {
     if (motion.on[f]) facts.touching.emplace_back().finger = static_cast<Finger>(f);
   }
@@ -99,13 +99,13 @@ void WriteMotionFilm(const LoadedRun& run, const std::filesystem::path& file) {
     }
     meshes.push_back(std::move(mesh));
   }
-  const std::vector<HandShape>& shapes = ShadowHandShapes();
+  const std::vector<HandShape>& shapes = ShapesOf(HandOf(run.scene));
   const std::size_t first = meshes.size();
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     meshes.push_back({fmt::format("hand.{}", i + 1), shapes[i].mesh, shapes[i].rgba, {}});
   }
   for (const FilmFrame& frame : frames) {
-    const auto X_WL = CalcLinkPoses(ShadowHand(), frame.motion.hand);
+    const auto X_WL = CalcLinkPoses(HandOf(run.scene), frame.motion.hand);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       meshes[first + i].X_WB.push_back(X_WL[shapes[i].link]);
     }

@@ -88,13 +88,13 @@ void Recorder::WriteTables(const Timeline::Node& node) {
   }
   if (const LiftResult* lift = FindLift(*state)) {
     std::string table = LiftHeader(timeline_.job().scene());
-    for (const TraceRow& row : lift->trace) table += LiftRow(row.state);
+    for (const TraceRow& row : lift->trace) table += LiftRow(timeline_.job().scene(), row.state);
     WriteFile(run_.partial() / "lift.csv", table);
   }
   if (state->motion && state->motion_state->filled) {
-    std::string table = MotionHeader();
+    std::string table = MotionHeader(timeline_.job().hand());
     for (std::size_t i = 0; i < state->motion_state->frames.size(); ++i) {
-      table += MotionRow(state->motion_state->task->frames[i], state->motion_state->frames[i]);
+      table += MotionRow(timeline_.job().hand(), state->motion_state->task->frames[i], state->motion_state->frames[i]);
     }
     WriteFile(run_.partial() / "motion.csv", table);
   }

@@ -31,8 +31,7 @@ std::string SceneLabel(const Scene& scene) { return scene.file.empty() ? scene.n
 std::map<std::string, std::string> HashInputs(const std::filesystem::path& weights) {
   std::map<std::string, std::string> hashes;
   for (const std::filesystem::path& file :
-       {weights / "score.safetensors", weights / "generator.safetensors",
-        DataFolder() / "assets" / "hand" / "shadow_right.urdf"}) {
+       {weights / "score.safetensors", weights / "generator.safetensors"}) {
     std::error_code none;
     if (std::filesystem::exists(file, none)) hashes[file.filename().string()] = Sha256OfFile(file);
   }

@@ -25,7 +25,7 @@ struct SessionConfig {
 };
 
 /// SHA-256 of the files that a result depends on beside the scene and the program, by name, as far
-/// as they are there: the weights in that folder, the hand.
+/// as they are there: the weights in that folder. The hand's stands in scene.json.
 std::map<std::string, std::string> HashInputs(const std::filesystem::path& weights);
 
 /// One scene under work: its job and timeline, where its simulations and plans begin, and its run

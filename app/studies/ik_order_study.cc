@@ -103,7 +103,7 @@ class IkOrder : public Study {
   nlohmann::ordered_json MakeItem(std::int64_t index) const override {
     const MotionProblem problem =
         MakeMotionProblem(setup_.first_seed + static_cast<std::uint64_t>(index));
-    const IkSolver solver(ShadowHand(), problem.scene);
+    const IkSolver solver(HandOf(problem.scene), problem.scene);
     ProblemFacts facts{problem.seed, {}, {}};
     const MotionConfig& config = setup_.planner.motion;
     facts.reverse = MakeInOrder(solver, problem, config, KeyframeOrder::kReverse);

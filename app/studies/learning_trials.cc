@@ -116,9 +116,12 @@ struct Tally {
     raw += grasp.raw.feasible();
     feasible += grasp.feasible();
     const std::vector<GraspContact>& tips = grasp.projected;
+    const TipSpheres spheres;  // of the hand that the networks know
     bool overlap = false;
     for (std::size_t i = 0; i < tips.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) overlap = overlap || CalcTipGap(tips[i], tips[j]) < 0.0;
+      for (std::size_t j = 0; j < i; ++j) {
+        overlap = overlap || CalcTipGap(spheres, tips[i], tips[j]) < 0.0;
+      }
     }
     overlapping += overlap;
   }
@@ -377,7 +380,8 @@ Json ProbeLadder(const Ladder& ladder, std::uint64_t seed, const StudySetup& set
     std::vector<PlanningContacts> contacts;
     for (const TruthRecord& truth : known.truths) contacts.push_back(truth.contacts);
     const ObjectState seen =
-        MakeObjectState(cloud, X_WB, planner->grasp_world().environment(), ladder.scene.gravity);
+        MakeObjectState(cloud, X_WB, planner->grasp_world().environment(), ladder.scene.gravity,
+                        ladder.scene.tips.radius(Finger::kIndex));
     const VectorX progress = score.ScoreContacts(structure, seen, contacts, ScoreOutput::kProgress);
     const VectorX lifted = score.ScoreContacts(structure, seen, contacts, ScoreOutput::kLifted);
     poses[i] = {{"held", !states[i].fixed.empty()}, {"grasps", known.stats.found.front()}};

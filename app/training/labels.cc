@@ -122,7 +122,8 @@ LabelRecord CalcLabel(const GraspWorld& world, const GraspGenerator& generator,
       if (contact) contact->phi = CalcContactDistance(world, contact->p_OC, X_WB);
     }
     const EncodedState encoded = generator.Encode(
-        structure, MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity));
+        structure, MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity,
+                                   world.tips().radius(Finger::kIndex)));
     const auto grasps = generator.Sample(structure, encoded, seen, config.tries,
                                          Rng(seed, RngStream::kLabelLatent));
     const ContactPlaces places(world, X_WB);

@@ -97,7 +97,8 @@ DatasetItem MakeEmptyItem(const SceneObject& object, const PointCloud& cloud, st
 ContextRecord MakeContextRecord(const GraspWorld& world, const PointCloud& cloud,
                                 const std::vector<RigidTransform>& X_WB) {
   const ObjectState state =
-      MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity);
+      MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity,
+                      world.tips().radius(Finger::kIndex));
   ContextRecord context;
   context.X_WO = X_WB.front();
   context.phi = state.phi;
@@ -109,7 +110,7 @@ GraspWorld MakeTrainingWorld(const Scene& scene) {
   SurfacePointsConfig surface;
   surface.spacing = 4e-3;
   surface.max_points = 3000;
-  return GraspWorld(scene, ShadowHand(), surface);
+  return GraspWorld(scene, HandOf(scene), surface);
 }
 
 DatasetItem MakeGraspItem(const ItemConfig& config, std::int64_t index, ThreadPool& pool) {

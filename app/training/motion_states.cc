@@ -109,7 +109,7 @@ class PushSampler {
     if (kind == Kind::kPinch) {
       Placement placement;
       for (int f = 0; f < kNumPlanningFingers; ++f) placement.fingers[f] = fingers[f].contact;
-      if (CalcTipGap(placement) < 0.0) return std::nullopt;
+      if (CalcTipGap(grasp_world_.tips(), placement) < 0.0) return std::nullopt;
     }
     RelativePlan plan;
     for (int s = 0; s < stages; ++s) {
@@ -134,7 +134,7 @@ class PushSampler {
       const auto finger = static_cast<Finger>(f);
       const FingertipState& tip = end.fingers[f];
       if (!stays && tip.on && tip.touching) {
-        if (CalcTipOverlap(end, finger, X_WB, grasp_world_.environment()) > kTipOverlapAllowed) {
+        if (CalcTipOverlap(end, finger, grasp_world_.tips().radius(finger), X_WB, grasp_world_.environment()) > kTipOverlapAllowed) {
           return std::nullopt;
         }
         const GraspContact contact = grasp_world_.ContactNear(finger, tip.p_OC);

@@ -31,12 +31,13 @@ ActionRange MakeActionRange(const Scene& scene, double max_travel) {
 
 ActionSpace::ActionSpace(const ContactGraph& graph, const std::vector<int>& path_nodes,
                          const SignedDistance& shape, const ActionRange& range, int knots,
-                         TipFits fits)
+                         const TipSpheres& tips, TipFits fits)
     : mesh_(&graph.mesh()),
       shape_(&shape),
       range_(range),
       num_stages_(static_cast<int>(path_nodes.size())),
       knots_(knots),
+      tips_(tips),
       fits_(std::move(fits)) {
   for (const int id : path_nodes) {
     const ContactNode& node = graph.nodes().at(id);
@@ -96,7 +97,7 @@ RelativePlan ActionSpace::Decode(const std::vector<double>& action) const {
       out.kept = out.on && stage > 0 && plan.stages[stage - 1][finger].on;
       if (out.on && !out.kept) {
         out.contact = ContactAt(stage, finger, u[1], u[2]);
-        out.on = HasRoom(static_cast<Finger>(finger), out.contact, *shape_);
+        out.on = HasRoom(tips_.radii[finger], out.contact, *shape_);
       }
       u += 3;
       for (int k = 0; k < knots_; ++k, u += kKnotSize) {

@@ -39,7 +39,8 @@ class ActionSpace {
  public:
   /// @param fits  decides where fingers may be put in the first stage; may be empty: anywhere.
   ActionSpace(const ContactGraph& graph, const std::vector<int>& path_nodes,
-              const SignedDistance& shape, const ActionRange& range, int knots, TipFits fits = {});
+              const SignedDistance& shape, const ActionRange& range, int knots,
+              const TipSpheres& tips = {}, TipFits fits = {});
 
   int size() const { return num_stages_ * kNumPlanningFingers * FingerSize(); }
 
@@ -72,6 +73,7 @@ class ActionSpace {
   std::vector<std::array<int, kNumPlanningFingers>> triangles_;  // by stage
   ActionRange range_;
   int num_stages_, knots_;
+  TipSpheres tips_;
   TipFits fits_;
   std::array<std::vector<Placement::Contact>, kNumPlanningFingers> fitting_;  // of the first stage
 };

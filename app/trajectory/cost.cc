@@ -15,6 +15,7 @@ constexpr double kRestTurn = 1.0;    // [rad/s] counts as one unit of unrest
 constexpr double kFastSpeed = 0.35;  // [m/s]
 constexpr double kTipSpeed = 0.8;    // [m/s] of a fingertip, nearly what the wrist may do
 constexpr double kTipHaste = 8.0;    // [m/s^2] a way of a frame bends by a millimetre
+constexpr double kDeep = 0.009;      // [m] of an overlap that counts as one: a fingertip
 constexpr double kFallDepth = 0.15;  // [m] below its start: over the edge and gone
 
 ScoredState MakeScoredState(const World& world, const WorldState& state) {
@@ -112,7 +113,7 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
       weights.unrest * std::min(2.0, end.v_WB.norm() / kRestSpeed + end.w_WB.norm() / kRestTurn);
   cost.speed = weights.speed * std::clamp(outcome.max_speed - kFastSpeed, 0.0, 2.0);
   const auto by_radius = [](double depth) {
-    return std::clamp(depth / FingertipRadius(Finger::kIndex), 0.0, 1.0);
+    return std::clamp(depth / kDeep, 0.0, 1.0);
   };
   cost.tip_overlap = weights.tip_overlap * by_radius(outcome.max_tip_overlap);
   cost.tip_spacing = weights.tip_spacing * by_radius(-outcome.min_tip_gap);

@@ -19,10 +19,10 @@ TipFits MakeTipFits(const MppiProblem& problem) {
   const EnvironmentDistance* environment = problem.environment;
   const SignedDistance* shape = problem.shape;
   std::vector<RigidTransform> X_WB = problem.world->GetPoses(problem.start);
-  return [=, X_WB = std::move(X_WB)](Finger finger, const Placement::Contact& contact) {
-    const double radius = FingertipRadius(finger);
-    const Vector3 p_WTip = X_WB.front() * FingertipCentre(finger, contact.p_OC, contact.nhat_O);
-    return HasRoom(finger, contact, *shape) &&
+  return [=, tips = problem.world->scene().tips, X_WB = std::move(X_WB)](Finger finger, const Placement::Contact& contact) {
+    const double radius = tips.radius(finger);
+    const Vector3 p_WTip = X_WB.front() * tips.Centre(finger, contact.p_OC, contact.nhat_O);
+    return HasRoom(radius, contact, *shape) &&
            radius - environment->Calc(p_WTip, X_WB).phi <= kTipOverlapAllowed;
   };
 }
@@ -34,7 +34,7 @@ Mppi::Mppi(const MppiProblem& problem, const MppiConfig& config)
       config_(config),
       range_(MakeActionRange(problem.world->scene(), config.max_travel)),
       space_(*problem.graph, problem.path.nodes, *problem.shape, range_, config.timing.knots,
-             MakeTipFits(problem)) {
+             problem.world->scene().tips, MakeTipFits(problem)) {
   PREGRASP_CHECK(config.samples >= 2 && config.iterations >= 1 && config.patience >= 1,
                  config.samples, config.iterations, config.patience);
   PREGRASP_CHECK(config.sigma > 0.0 && config.final_sigma > 0.0 && config.temperature > 0.0,

@@ -176,7 +176,7 @@ class PlanRunner {
   }
 
   bool Fits(Finger finger) const {
-    return CalcTipOverlap(state_, finger, world_.GetPoses(state_), environment_) <=
+    return CalcTipOverlap(state_, finger, tips_.radius(finger), world_.GetPoses(state_), environment_) <=
            kTipOverlapAllowed;
   }
 
@@ -233,7 +233,8 @@ class PlanRunner {
     bool overlaps = false;
     for (int j = 0; j < kNumPlanningFingers; ++j) {
       if (!state_.fingers[j].on) continue;
-      const double overlap = CalcTipOverlap(state_, static_cast<Finger>(j), X_WB, environment_);
+      const double overlap = CalcTipOverlap(state_, static_cast<Finger>(j),
+                                            tips_.radii[j], X_WB, environment_);
       PREGRASP_CHECK(std::isfinite(overlap), j, overlap);  // std::max passes over a NaN
       outcome_.max_tip_overlap = std::max(outcome_.max_tip_overlap, overlap);
       overlaps |= !(overlap <= kTipOverlapAllowed);
@@ -242,14 +243,15 @@ class PlanRunner {
     if (state_.fingers[0].on && state_.fingers[1].on) {
       const auto centre_O = [&](int j) {
         const FingertipState& tip = state_.fingers[j];
-        return FingertipCentre(static_cast<Finger>(j), tip.p_OC, tip.nhat_O);
+        return tips_.Centre(static_cast<Finger>(j), tip.p_OC, tip.nhat_O);
       };
-      const double gap = CalcTipGap(Finger::kThumb, centre_O(0), Finger::kIndex, centre_O(1));
+      const double gap = tips_.CalcGap(Finger::kThumb, centre_O(0), Finger::kIndex, centre_O(1));
       outcome_.min_tip_gap = std::min(outcome_.min_tip_gap, gap);
     }
   }
 
   const World& world_;
+  const TipSpheres& tips_ = world_.scene().tips;
   const EnvironmentDistance& environment_;
   const PlanTiming& timing_;
   Stepper stepper_;

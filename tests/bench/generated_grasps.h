@@ -38,7 +38,7 @@ class GeneratedGrasps {
     const LearnedScorer scorer(score, scene, cloud, world_.environment(), pool_);
     const CloudStructure structure = generator.BuildStructure(cloud.P, X_WB[0].linear());
     const EncodedState encoded = generator.Encode(
-        structure, MakeObjectState(cloud, X_WB, world_.environment(), scene.gravity));
+        structure, MakeObjectState(cloud, X_WB, world_.environment(), scene.gravity, 0.009));
     Placement fixed;
     for (const GraspContact& contact : pressing_) {
       fixed.fingers[static_cast<int>(contact.finger)] = {true, contact.p_OC, contact.nhat_O};

@@ -2,7 +2,7 @@
 // makes.
 #include <gtest/gtest.h>
 
-#include "bindings/lua_api.h"
+#include "app/core/lua_api.h"
 #include "tests/bindings/run_program.h"
 
 namespace pregrasp {

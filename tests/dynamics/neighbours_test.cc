@@ -64,7 +64,7 @@ TEST(TipOverlapTest, IsHowDeepTheSphereOutsideTheObjectReachesIntoTheSurrounding
   for (const double z : {0.004, 0.0087, 0.02}) {
     WorldState state = world.InitialState();
     world.PutFinger(state, Finger::kIndex, Vector3(0.05, 0.0, z - 0.03));
-    EXPECT_NEAR(CalcTipOverlap(state, Finger::kIndex, world.GetPoses(state), environment),
+    EXPECT_NEAR(CalcTipOverlap(state, Finger::kIndex, 0.009, world.GetPoses(state), environment),
                 0.0090 - z, 1e-9);
   }
 }

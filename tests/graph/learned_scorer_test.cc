@@ -47,7 +47,7 @@ TEST(LearnedScorerTest, SeesWhatHidesBelowTheObjectAndWhatStandsOverTheEdge) {
   const BarScorer bar(1);
   const std::vector<RigidTransform> X_WB = {bar.scene.bodies[0].X_WB, bar.scene.bodies[1].X_WB};
   const PointCloud& cloud = bar.scorer.cloud();
-  const ObjectState state = MakeObjectState(cloud, X_WB, bar.environment, bar.scene.gravity);
+  const ObjectState state = MakeObjectState(cloud, X_WB, bar.environment, bar.scene.gravity, 0.009);
   for (Eigen::Index i = 0; i < cloud.P.rows(); ++i) {
     const bool bottom = cloud.N(i, 2) < -0.9;
     const double x = cloud.P(i, 0) - 0.05;

@@ -95,7 +95,7 @@ TEST(CertificateTest, TheRelaxedAndTheZeroPostureAreFree) {
 
 TEST(CertificateTest, AFistThroughItselfIsACollision) {
   HandConfiguration fist;
-  for (int j = 0; j < kNumHandJoints; ++j) fist.q[j] = ShadowHand().q_upper[j];
+  for (int j = 0; j < kMaxHandJoints; ++j) fist.q[j] = ShadowHand().q_upper[j];
   EXPECT_FALSE(HandCertificate(ShadowHand(), {}).FindCollisions(fist, {}, {}).empty());
 }
 

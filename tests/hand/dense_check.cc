@@ -29,7 +29,7 @@ std::vector<std::string> FindFaults(const HandModel& hand, const std::vector<con
   std::vector<std::string> faults;
   HandSimbody simbody(hand);
   simbody.SetConfiguration(configuration);
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < kMaxHandJoints; ++j) {
     const double q = configuration.q[j];
     if (q < hand.joints[j].lower || q > hand.joints[j].upper) {
       faults.push_back(fmt::format("{} = {} beyond its limits", kHandJointNames[j], q));

@@ -209,7 +209,7 @@ TEST(HandDistanceTest, GradientsAreTheDifferenceQuotients) {
     const auto at = [&](const HandVector& step) {
       return FindAll(obstacles, bodies, Advance(start, step), {}, 0.03);
     };
-    for (int i = 0; i < kNumHandDofs; ++i) {
+    for (int i = 0; i < kMaxHandDofs; ++i) {
       const auto plus = at(kStep * HandVector::Unit(i));
       const auto minus = at(-kStep * HandVector::Unit(i));
       const auto find = [](const std::vector<HandDistance>& list, const HandDistance& d) {

@@ -52,7 +52,7 @@ TEST(HandKinematicsTest, PosesAndJacobiansEqualSimbodys) {
     const HandConfiguration configuration = RandomConfiguration(ShadowHand(), rng);
     const HandPose pose = PoseOf(configuration);
     reference.SetConfiguration(configuration);
-    for (int link = 0; link < kNumHandLinks; ++link) {
+    for (int link = 0; link < kMaxHandLinks; ++link) {
       const RigidTransform X_WL = reference.CalcLinkPose(link);
       EXPECT_LT((pose.X_WL(link).matrix() - X_WL.matrix()).cwiseAbs().maxCoeff(), 1e-12) << link;
       const Vector3 p_L = 0.03 * rng.Direction();
@@ -69,7 +69,7 @@ TEST(HandKinematicsTest, GradientsAreTheDifferenceQuotients) {
   for (int trial = 0; trial < 40; ++trial) {
     const HandConfiguration start = RandomConfiguration(ShadowHand(), rng);
     const HandPose pose = PoseOf(start);
-    const int link = static_cast<int>(rng.UniformInt(kNumHandLinks));
+    const int link = static_cast<int>(rng.UniformInt(kMaxHandLinks));
     const Vector3 p_L = 0.03 * rng.Direction();
     const Vector3 d_L = rng.Direction();
     const Vector3 a_W = rng.Direction();
@@ -80,7 +80,7 @@ TEST(HandKinematicsTest, GradientsAreTheDifferenceQuotients) {
     PointJacobian J;
     CalcPointJacobian(ShadowHand(), pose, link, pose.CalcPoint(link, p_L), &J);
     EXPECT_LT((J.transpose() * a_W - point).cwiseAbs().maxCoeff(), 1e-14);
-    for (int i = 0; i < kNumHandDofs; ++i) {
+    for (int i = 0; i < kMaxHandDofs; ++i) {
       const HandVector step = kStep * HandVector::Unit(i);
       const HandPose plus = PoseOf(Advance(start, step));
       const HandPose minus = PoseOf(Advance(start, -step));

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string ReadUrdf() {
-  std::ifstream in(fs::path(PREGRASP_SOURCE_DIR) / "assets/hand/shadow_right.urdf");
+  std::ifstream in(fs::path(PREGRASP_SOURCE_DIR) / "assets/hands/shadow_right/shadow_right.urdf");
   std::stringstream text;
   text << in.rdbuf();
   return text.str();
@@ -46,7 +46,7 @@ void ExpectInputError(const std::string& from, const std::string& to, const std:
 TEST(HandModelTest, JointsHaveTheVendorsLimitsSpeedsAndEfforts) {
   const HandModel& hand = ShadowHand();
   const auto joint = [&](const std::string& name) {
-    for (int j = 0; j < kNumHandJoints; ++j) {
+    for (int j = 0; j < kMaxHandJoints; ++j) {
       if (name == kHandJointNames[j]) return hand.joints[j];
     }
     throw std::runtime_error(name);

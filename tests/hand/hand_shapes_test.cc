@@ -41,8 +41,8 @@ double CalcVolume(const TriangleMesh& mesh) {
 
 TEST(HandMeshesTest, TheCommittedFilesAreWhatTheGeneratorMakes) {
   for (const auto& [name, mesh] : BuildHandMeshes()) {
-    EXPECT_EQ(ReadFile(kAssets / "hand/meshes" / (name + ".obj")), FormatObj(mesh, 6))
-        << name << ": run pregrasp-hand-meshes assets/hand/meshes, then mend assets/MANIFEST";
+    EXPECT_EQ(ReadFile(kAssets / "hands/shadow_right/meshes" / (name + ".obj")), FormatObj(mesh, 6))
+        << name << ": run pregrasp-hand-meshes assets/hands/shadow_right/meshes, then mend assets/MANIFEST";
   }
 }
 

@@ -36,7 +36,7 @@ TEST(IkResidualsTest, TheNormalEquationsAreThoseOfTheCost) {
   residuals.AddNormalEquations(&A, &b);  // adds
   EXPECT_GT(b.norm(), 1.0);
   constexpr double kStep = 1e-7;
-  for (int d = 0; d < kNumHandDofs; ++d) {
+  for (int d = 0; d < kMaxHandDofs; ++d) {
     const double up = residuals.Evaluate(Advance(at, HandVector(kStep * HandVector::Unit(d))));
     const double down = residuals.Evaluate(Advance(at, HandVector(-kStep * HandVector::Unit(d))));
     // The cost's gradient is 2 J^T r, of which b holds two.

@@ -26,7 +26,7 @@ HandConfiguration SimbodyAssembler::Solve(const std::vector<IkContact>& contacts
   impl_->simbody.SetConfiguration(start);
   SimTK::State state = impl_->simbody.state();
   SimTK::Assembler assembler(impl_->simbody.system());
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < kMaxHandJoints; ++j) {
     assembler.restrictQ(impl_->simbody.body(j + 1).getMobilizedBodyIndex(),
                         SimTK::MobilizerQIndex(0), impl_->hand.joints[j].lower,
                         impl_->hand.joints[j].upper);

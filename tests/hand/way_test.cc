@@ -128,7 +128,7 @@ TEST_F(WayTest, WhatIsCalledClearIsClearAtEveryMomentAndWhatIsBlockedIsNot) {
       HandConfiguration hand;
       hand.X_WH = MakeTransform(rng.Rotation(),
                                 Vector3(rng.Uniform(-0.25, -0.05), rng.Uniform(-0.2, 0.2), 0.0));
-      for (int j = 0; j < kNumHandJoints; ++j) {
+      for (int j = 0; j < kMaxHandJoints; ++j) {
         const double upper = ShadowHand().q_upper[j];
         hand.q[j] = ShadowHand().q_lower[j] < -0.01 ? 0.0 : rng.Uniform(0.0, 0.6 * upper);
       }
@@ -164,7 +164,7 @@ TEST(HandReachTest, NoPointOfACapsuleIsFartherOrGoesFartherThanItsBound) {
   for (int n = 0; n < 200; ++n) {
     Rng rng(12, RngStream::kTest, n);
     HandJoints q, dq;
-    for (int j = 0; j < kNumHandJoints; ++j) {
+    for (int j = 0; j < kMaxHandJoints; ++j) {
       q[j] = rng.Uniform(hand.q_lower[j], hand.q_upper[j]);
       dq[j] = rng.Uniform(-0.2, 0.2);
     }

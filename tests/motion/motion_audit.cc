@@ -135,7 +135,7 @@ void AddRates(const HandModel& hand, const std::vector<AuditFrame>& frames, std:
        "wrist acceleration");
   take(rate * (after.w - before.w).norm(), kTurn.acceleration, &rates.turn_acceleration,
        "wrist turn acceleration");
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < kMaxHandJoints; ++j) {
     take(std::abs(before.q[j]), hand.joints[j].max_speed, &rates.joint, kHandJointNames[j]);
     take(rate * std::abs(after.q[j] - before.q[j]), kJointAcceleration, &rates.joint_acceleration,
          kHandJointNames[j]);

@@ -203,7 +203,7 @@ void Make(const IkSolver& solver, const HandMotion& motion, const Scene& scene,
                  static_cast<int>(amiss.closest->pair), amiss.closest->other);
     }
     fmt::print(", joints");
-    for (int j = 0; j < kNumHandJoints; ++j) {
+    for (int j = 0; j < kMaxHandJoints; ++j) {
       const double q = state.frames[at].configuration.q[j];
       if (q <= ShadowHand().q_lower[j] || q >= ShadowHand().q_upper[j]) {
         fmt::print(" {}", kHandJointNames[j]);

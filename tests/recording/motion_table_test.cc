@@ -54,7 +54,7 @@ class MotionTableReadTest : public ::testing::Test {
     frame.configuration.X_WH =
         MakeTransform(Quaternion(Eigen::AngleAxisd(-1.5, Vector3(3.0, -1.0, 2.0).normalized())),
                       Vector3(0.4, 0.5, -0.6));
-    for (int j = 0; j < kNumHandJoints; ++j) frame.configuration.q[j] = 0.01 * j - 0.05;
+    for (int j = 0; j < kMaxHandJoints; ++j) frame.configuration.q[j] = 0.01 * j - 0.05;
     frame.clearance = 1.25e-3;
     frame.tip_error = 2.5e-4;
     frame.rung = LooseningRung::kFailed;
