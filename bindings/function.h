@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "app/core/error.h"
-#include "app/core/memory_claim.h"
 #include "app/core/lua_api.h"
+#include "app/core/memory_claim.h"
 #include "bindings/machine.h"
 #include "bindings/schema.h"
 #include "bindings/value.h"

@@ -258,8 +258,9 @@ const std::vector<FunctionInfo>& GraspFunctions() {
 }
 
 std::vector<const Schema*> GraspSchemas() {
-  return {&kWrenchOptions, &kWrenchResult, &kIkOptions,    &kIkContacts,  &kIkContact,
-          &kTransform,     &kIkResult,     &JointSchema(ShadowHand()), &kGraspContact};
+  return {&kWrenchOptions, &kWrenchResult, &kIkOptions, &kIkContacts,
+          &kIkContact,     &kTransform,    &kIkResult,  &JointSchema(ShadowHand()),
+          &kGraspContact};
 }
 
 }  // namespace pregrasp

@@ -31,8 +31,8 @@ namespace {
 
 using ShapePtr = std::shared_ptr<const LuaShape>;
 
-const Schema kSceneKeys{"SceneTable",
-                        {"name", "object", "environment", "fingertips", "hand", "gravity", "camera"}};
+const Schema kSceneKeys{
+    "SceneTable", {"name", "object", "environment", "fingertips", "hand", "gravity", "camera"}};
 const Schema kBodyKeys{"BodyTable",
                        {"name", "shape", "p", "rpy_deg", "mass", "friction", "com", "inertia"}};
 const Schema kFingertipKeys{"FingertipsTable",

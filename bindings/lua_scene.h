@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/scene.h"
 #include "app/core/lua_api.h"
+#include "app/scene/scene.h"
 #include "bindings/value.h"
 
 namespace pregrasp {

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/core/lua_api.h"
 #include "app/core/memory_claim.h"
 #include "bindings/file_access.h"
-#include "app/core/lua_api.h"
 
 namespace pregrasp {
 

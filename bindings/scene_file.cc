@@ -51,7 +51,8 @@ void FindHandFile(Scene& scene, const fs::path& folder, const FileAccess& files)
     if (IsHandFile(scene.hand)) {
       std::error_code ignored;
       const fs::path beside = folder / scene.hand;
-      scene.hand = files.FindForReading(fs::exists(beside, ignored) ? beside.string() : scene.hand).string();
+      scene.hand =
+          files.FindForReading(fs::exists(beside, ignored) ? beside.string() : scene.hand).string();
     }
     TakeHand(scene);
   } catch (const InputError& error) {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "app/core/error.h"
+#include "app/core/lua_api.h"
 #include "app/core/math.h"
 #include "app/scene/finger.h"
-#include "app/core/lua_api.h"
 #include "bindings/schema.h"
 
 namespace pregrasp {

@@ -37,7 +37,7 @@ HandJoints FreePosture(const HandModel& hand, const HandJoints& wanted) {
   near.q = wanted;
   IkProblem problem;
   problem.reference = problem.warm_start = near;
-  const Rng rng(0, RngStream::kScriptIk);
+  const Rng rng(0, RngStream::kHandPoseIk);
   return IkSolver(hand).Solve({}, problem, rng).q;
 }
 
@@ -57,7 +57,7 @@ std::vector<HandPicture> ChoosePoses(const HandModel& hand, const HandMeasures& 
   for (int f = 1; f < hand.num_fingers; ++f) {
     poses.push_back({fmt::format("thumb_{}", kFingerNames[f]), measures.meeting[f], side});
   }
-  Rng rng(0, RngStream::kTipReach, 2);
+  Rng rng(0, RngStream::kHandPoses);
   for (int number = 1; std::ssize(poses) < kPoses; ++number) {
     HandJoints q = HandJoints::Zero();
     for (int j = 0; j < hand.num_joints; ++j) {
@@ -148,12 +148,13 @@ int CheckHand(const HandOptions& options) {
   }
   for (const InputError& fault : reading.faults) fmt::print(stderr, "{}\n", fault.what());
   if (!reading.faults.empty()) return 2;
-  fmt::print("{}: {} fingers, {} joints, {:.2f} kg\n", hand.name, hand.num_fingers,
-             hand.num_joints, measures.mass);
+  fmt::print("{}: {} fingers, {} joints, {:.2f} kg\n", hand.name, hand.num_fingers, hand.num_joints,
+             measures.mass);
   for (int f = 0; f < hand.num_fingers; ++f) PrintFinger(hand, measures, f);
   fmt::print("  free of itself in {:.0f} % of random postures\n", 100.0 * measures.free_share);
   for (const std::string& note : reading.notes) fmt::print("  note: {}\n", note);
-  DrawPoses(hand, measures, options.out.empty() ? fs::path("out") / ("hand_" + hand.name) : options.out);
+  DrawPoses(hand, measures,
+            options.out.empty() ? fs::path("out") / ("hand_" + hand.name) : options.out);
   return 0;
 }
 

@@ -60,6 +60,9 @@ enum class RngStream : std::uint8_t {
   kMotionPolish,
   kMotionProblem,
   kMotionProblemIk,
+  kHandMeasures,
+  kHandPoses,
+  kHandPoseIk,
 };
 
 /// Counter-based generator: Philox4x64-10 (Salmon et al., "Parallel random numbers: as easy as 1,

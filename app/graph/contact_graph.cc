@@ -41,7 +41,8 @@ std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& 
     }
     for (int s = 0; s < kFitSamples && !all[t].fits; ++s) {
       const Placement::Contact contact = draw(t, rng);
-      all[t].fits = HasRoom(context.tips().radius(finger), contact, shape) && !context.IsOccluded(finger, contact);
+      all[t].fits = HasRoom(context.tips().radius(finger), contact, shape) &&
+                    !context.IsOccluded(finger, contact);
     }
   }
   return all;

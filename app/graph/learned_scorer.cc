@@ -95,7 +95,8 @@ std::vector<double> LearnedScorer::Score(std::span<const ScoredState> states) co
   std::vector<ObjectState> seen(count);
   std::vector<PlanningContacts> contacts(count);
   pool_.ParallelFor(count, [&](int i, int) {
-    seen[i] = MakeObjectState(cloud_, states[i].X_WB, environment_, gravity_W_, tips_.radius(Finger::kIndex));
+    seen[i] = MakeObjectState(cloud_, states[i].X_WB, environment_, gravity_W_,
+                              tips_.radius(Finger::kIndex));
     contacts[i] = MakePlanningContacts(states[i].placement, &states[i].X_WB, environment_);
   });
   const VectorX scores = score_.ScoreStates(structure_, seen, contacts, pool_);
@@ -131,8 +132,9 @@ double LearnedScorer::ScoreBestProbes(const ScoredState& state) const {
   }
   if (contacts.empty()) return 0.0;
   const VectorX all = score_.ScoreContacts(
-      structure_, MakeObjectState(cloud_, state.X_WB, environment_, gravity_W_, tips_.radius(Finger::kIndex)), contacts,
-      ScoreOutput::kProgress);
+      structure_,
+      MakeObjectState(cloud_, state.X_WB, environment_, gravity_W_, tips_.radius(Finger::kIndex)),
+      contacts, ScoreOutput::kProgress);
   std::vector<double> best(all.data(), all.data() + all.size());
   const auto count = std::min<std::ptrdiff_t>(kBestProbes, std::ssize(best));
   std::partial_sort(best.begin(), best.begin() + count, best.end(), std::greater<>());
@@ -142,7 +144,8 @@ double LearnedScorer::ScoreBestProbes(const ScoredState& state) const {
 std::unique_ptr<PlacementScorer> LearnedScorer::At(const std::vector<RigidTransform>& X_WB,
                                                    ScoreOutput output) const {
   return std::make_unique<FixedState>(
-      *this, MakeObjectState(cloud_, X_WB, environment_, gravity_W_, tips_.radius(Finger::kIndex)), X_WB, output);
+      *this, MakeObjectState(cloud_, X_WB, environment_, gravity_W_, tips_.radius(Finger::kIndex)),
+      X_WB, output);
 }
 
 std::unique_ptr<PlacementScorer> LearnedScorer::Free() const {

@@ -31,7 +31,8 @@ std::vector<Placement::Contact> SampleContacts(Finger finger, const TriangleMesh
     const double u = rng.Uniform(), v = rng.Uniform();
     const Placement::Contact contact =
         ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape);
-    const bool free = !scorer.IsOccluded(finger, contact) && HasRoom(scorer.tips().radius(finger), contact, shape);
+    const bool free = !scorer.IsOccluded(finger, contact) &&
+                      HasRoom(scorer.tips().radius(finger), contact, shape);
     if (free) contacts.push_back(contact);
   }
   return contacts;

@@ -87,8 +87,9 @@ bool ContactSampler::Fits(const GraspContact& contact, const std::vector<GraspCo
     if (draw.near && !IsThumb(contact.finger) && !IsThumb(other.finger)) {
       farthest = std::min(farthest, config_.near_spacing * std::abs(f - g) + config_.near_offset);
     }
-    const bool fits = distance >= world_.reach().nearest[f][g] && distance <= farthest &&
-                      tips.CalcGap(contact.finger, centre, other.finger, TipCentre(tips, other)) >= 0.0;
+    const bool fits =
+        distance >= world_.reach().nearest[f][g] && distance <= farthest &&
+        tips.CalcGap(contact.finger, centre, other.finger, TipCentre(tips, other)) >= 0.0;
     if (!fits) return false;
   }
   return true;

@@ -170,7 +170,8 @@ GraspRefinement::Pull GraspRefinement::CalcPull() const {
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     if (choice_[i] == kLeftOut) continue;
     const GraspContact& contact = choices_[i].places[choice_[i]];
-    const Vector3 way = CalcTip(last_->configuration(), contact.finger) - TipCentre(tips(), contact);
+    const Vector3 way =
+        CalcTip(last_->configuration(), contact.finger) - TipCentre(tips(), contact);
     pull.way_O[static_cast<int>(contact.finger)] = kOvershoot * way;
   }
   if (last_->closest) {
@@ -207,8 +208,8 @@ void GraspRefinement::FollowHand() {
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     if (choice_[i] == kLeftOut || choices_[i].places.size() < 2) continue;
     const ContactChoices& choices = choices_[i];
-    const Vector3 wish =
-        TipCentre(tips(), choices.places[choice_[i]]) + pull.way_O[static_cast<int>(choices.finger)];
+    const Vector3 wish = TipCentre(tips(), choices.places[choice_[i]]) +
+                         pull.way_O[static_cast<int>(choices.finger)];
     double least = std::numeric_limits<double>::infinity();
     int nearest = choice_[i];
     for (int place = 0; place < static_cast<int>(choices.places.size()); ++place) {

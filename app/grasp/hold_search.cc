@@ -145,7 +145,8 @@ bool HoldSearch::Improve(ContactChoice& choice) const {
         }
         const double way = choices_[i].moved[place];
         const bool better = trial > best_score || (trial == enough && way < best_way);
-        if (!better || !HasRoom(world_.tips(), choices_, choice, static_cast<int>(i), place)) continue;
+        if (!better || !HasRoom(world_.tips(), choices_, choice, static_cast<int>(i), place))
+          continue;
         best_contact = i;
         best_place = place;
         best_score = trial;

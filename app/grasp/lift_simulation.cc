@@ -185,7 +185,8 @@ class Lifter {
     for (int f = 0; f < kNumFingers; ++f) {
       if (!state_.fingers[f].on) continue;
       const Finger finger = static_cast<Finger>(f);
-      const double overlap = CalcTipOverlap(state_, finger, world_.scene().tips.radius(finger), X_WB, environment_);
+      const double overlap =
+          CalcTipOverlap(state_, finger, world_.scene().tips.radius(finger), X_WB, environment_);
       if (overlap > outcome_.tip_overlap) {
         outcome_.tip_overlap = overlap;
         outcome_.deepest_tip = finger;

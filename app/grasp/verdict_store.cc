@@ -80,7 +80,8 @@ void AddHand(const HandModel& hand, KeyText& out) {
     const Fingertip& tip = hand.tips[f];
     out << static_cast<double>(tip.link) << tip.p_LT << tip.radius;
   }
-  for (const auto& [a, b] : hand.self_pairs) out << static_cast<double>(a) << static_cast<double>(b);
+  for (const auto& [a, b] : hand.self_pairs)
+    out << static_cast<double>(a) << static_cast<double>(b);
 }
 
 void AddConfig(const SurfacePointsConfig& surface, const StartCertificateConfig& config,

@@ -9,8 +9,8 @@
 
 namespace pregrasp {
 
-/// The forearm that a hand would have behind it (HandForearm), which its links leave out: the Shadow
-/// Hand's is 3 cm thick, from the wrist to 20 cm behind the palm.
+/// The forearm that a hand would have behind it (HandForearm), which its links leave out: the
+/// Shadow Hand's is 3 cm thick, from the wrist to 20 cm behind the palm.
 class Forearm {
  public:
   /// @param scene  loaded.

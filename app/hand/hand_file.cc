@@ -70,15 +70,19 @@ class Converter {
       throw InputError(where_, path, "the table of a hand", "one too large");
     }
     switch (lua_type(L_, -1)) {
-      case LUA_TBOOLEAN: return lua_toboolean(L_, -1) != 0;
-      case LUA_TNUMBER: return lua_tonumber(L_, -1);
+      case LUA_TBOOLEAN:
+        return lua_toboolean(L_, -1) != 0;
+      case LUA_TNUMBER:
+        return lua_tonumber(L_, -1);
       case LUA_TSTRING: {
         std::size_t length = 0;
         const char* text = lua_tolstring(L_, -1, &length);
         return std::string(text, length);
       }
-      case LUA_TTABLE: return ConvertTable(path, depth);
-      default: throw InputError(where_, path, "data", luaL_typename(L_, -1));
+      case LUA_TTABLE:
+        return ConvertTable(path, depth);
+      default:
+        throw InputError(where_, path, "data", luaL_typename(L_, -1));
     }
   }
 
@@ -115,7 +119,8 @@ class Converter {
 std::string ReadSource(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) {
-    throw InputError(file.string(), "", "a hand.lua", fs::exists(file, ignored) ? "no file" : "nothing there");
+    throw InputError(file.string(), "", "a hand.lua",
+                     fs::exists(file, ignored) ? "no file" : "nothing there");
   }
   std::ifstream in(file, std::ios::binary);
   std::string text(kMaxSource + 1, '\0');
@@ -211,8 +216,9 @@ class Value {
   std::string Name() const {
     const std::string name = Text();
     const bool legal = !name.empty() && name.size() <= 64 &&
-                       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                              "0123456789_.-") == std::string::npos;
+                       name.find_first_not_of(
+                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                           "0123456789_.-") == std::string::npos;
     if (!legal) Fail("a name of letters, digits, _, - and .");
     return name;
   }
@@ -304,8 +310,8 @@ HandDescription ReadHandFile(const fs::path& file) {
   const Json json = RunHandFile(file);
   const std::string where = file.string();
   const Value table(json, where);
-  table.ExpectKeys({"name", "urdf", "mirror", "palm", "fingers", "posture", "may_touch", "capsules",
-                    "forearm"});
+  table.ExpectKeys(
+      {"name", "urdf", "mirror", "palm", "fingers", "posture", "may_touch", "capsules", "forearm"});
   HandDescription hand;
   hand.file = file;
   hand.name = table["name"].Name();

@@ -11,9 +11,9 @@ namespace pregrasp {
 namespace {
 
 constexpr int kPostures = 5000;
-constexpr int kSweeps = 200;           // downhill, over all joints
-constexpr double kFirstTurn = 0.2;     // [rad]
-constexpr double kFinestTurn = 1e-3;    // [rad]
+constexpr int kSweeps = 200;          // downhill, over all joints
+constexpr double kFirstTurn = 0.2;    // [rad]
+constexpr double kFinestTurn = 1e-3;  // [rad]
 
 bool IsFree(const HandModel& hand, const HandPose& pose) {
   CapsuleEnds ends;
@@ -31,7 +31,7 @@ class Measurer {
     HandMeasures measures;
     for (int link = 0; link < hand_.num_links(); ++link) measures.mass += hand_.links[link].mass;
     std::vector<HandJoints> postures;
-    Rng rng(0, RngStream::kTipReach, 1);
+    Rng rng(0, RngStream::kHandMeasures);
     int free = 0;
     for (int i = 0; i < kPostures; ++i) {
       HandJoints q = HandJoints::Zero();

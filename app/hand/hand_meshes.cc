@@ -127,15 +127,16 @@ TriangleMesh FingerKnuckle() {
 // Of the four-finger hand.
 
 TriangleMesh QuadPalm() {
-  const TriangleMesh body = Loft({{-12.0, 0.0, 0.0, 22.0, 11.0, 0.0},
-                                  {-3.0, 0.0, -0.4, 31.0, 12.6, 0.0},
+  const TriangleMesh body = Loft({{-12.0, 0.0, 0.0, 18.0, 9.0, 0.0},
+                                  {-3.0, 0.0, -0.4, 28.0, 11.0, 0.0},
                                   {10.0, 0.0, -0.5, 40.0, 13.2, 0.0},
                                   {40.0, 0.0, -0.2, 43.4, 13.2, 0.0},
                                   {74.0, 0.0, 0.0, 43.2, 12.8, 0.0},
                                   {88.0, 0.0, 0.0, 41.5, 11.0, 0.0}},
                                  6.0, 5.0);
   std::vector<TriangleMesh> parts{body};
-  for (const auto& [x, z] : {std::pair{30.0, 96.0}, std::pair{0.0, 100.0}, std::pair{-30.0, 96.0}}) {
+  for (const auto& [x, z] :
+       {std::pair{30.0, 96.0}, std::pair{0.0, 100.0}, std::pair{-30.0, 96.0}}) {
     parts.push_back(
         Placed(Fork(6.4, 9.6, z, 7.0, 82.0),
                MakeTransform(RotationFromRpy({0.0, 0.0, 0.5 * kPi}), Vector3(1e-3 * x, 0.0, 0.0))));
@@ -147,7 +148,7 @@ TriangleMesh QuadCushion() {
   const RigidTransform X_palmar =
       MakeTransform(RotationFromRpy({0.5 * kPi, 0.0, 0.0}), Vector3(0.0, 0.0, 0.0));
   const TriangleMesh plate = Placed(
-      Loft({{9.0, -1.0, 58.0, 37.0, 20.0, 4.0}, {14.2, -1.0, 58.0, 35.5, 18.5, 4.0}}, 1.0, 1.6),
+      Loft({{8.4, -1.0, 58.0, 37.0, 20.0, 4.0}, {12.9, -1.0, 58.0, 35.5, 18.5, 4.0}}, 1.0, 1.6),
       X_palmar);
   const TriangleMesh ball =
       Placed(Loft({{-14.0, 0, 0, 12.6, 12.6, 2.0},

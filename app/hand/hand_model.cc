@@ -29,9 +29,9 @@ fs::path FileOfHand(const std::string& name_or_file) {
     listed += (listed.empty() ? "" : ", ") + name;
   }
   const std::string nearest = FindNearest(name_or_file, names);
-  throw InputError("", "hand", "the name of a hand (" + listed + ") or a hand.lua",
-                   '"' + name_or_file + '"' +
-                       (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+  throw InputError(
+      "", "hand", "the name of a hand (" + listed + ") or a hand.lua",
+      '"' + name_or_file + '"' + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
 }
 
 }  // namespace

@@ -37,10 +37,11 @@ struct HandConfiguration {
 
 /// A revolute joint. Joint j moves link j + 1; link 0 is the palm.
 struct HandJoint {
-  std::string name;     ///< its column in motion.csv
-  int parent = 0;       ///< link, below j + 1
-  RigidTransform X_PJ = RigidTransform::Identity();  ///< the child link's frame in the parent's at q = 0
-  Vector3 axis = Vector3::UnitZ();                   ///< unit, in the child's frame
+  std::string name;  ///< its column in motion.csv
+  int parent = 0;    ///< link, below j + 1
+  RigidTransform X_PJ =
+      RigidTransform::Identity();   ///< the child link's frame in the parent's at q = 0
+  Vector3 axis = Vector3::UnitZ();  ///< unit, in the child's frame
   double lower = 0.0, upper = 0.0;
   double max_speed = 0.0;   ///< [rad/s]
   double max_effort = 0.0;  ///< [N m]
@@ -63,9 +64,9 @@ struct HandCapsule {
 
 /// The sphere at a finger's end.
 struct Fingertip {
-  int link = 0;                      ///< that carries it: the finger's last
-  int capsule = 0;                   ///< one of whose ends it is
-  Vector3 p_LT = Vector3::Zero();    ///< its centre
+  int link = 0;                    ///< that carries it: the finger's last
+  int capsule = 0;                 ///< one of whose ends it is
+  Vector3 p_LT = Vector3::Zero();  ///< its centre
   double radius = 0.0;
 };
 
@@ -86,8 +87,8 @@ struct HandVisual {
 /// The forearm that the hand would have behind it, which its links leave out: a capsule about the
 /// palm's -z.
 struct HandForearm {
-  double radius = 0.015;              ///< [m]
-  double begin = 0.032, end = 0.20;   ///< behind the palm's origin [m]
+  double radius = 0.015;             ///< [m]
+  double begin = 0.032, end = 0.20;  ///< behind the palm's origin [m]
 };
 
 /// A hand of two to five fingers, one of them a thumb, as plain values: kinematic tree, limits,
@@ -96,8 +97,9 @@ struct HandForearm {
 /// index on, then the thumb's, palm to tip within a finger.
 struct HandModel {
   std::string name;
-  std::filesystem::path file;  ///< the description it was read from
-  std::string sha256;          ///< of that file and its URDF
+  std::filesystem::path file;                ///< the description it was read from
+  std::vector<std::filesystem::path> files;  ///< that, the URDF and the meshes
+  std::string sha256;                        ///< of that file and its URDF
   int num_joints = 0;
   int num_links() const { return num_joints + 1; }
   std::array<HandJoint, kMaxHandJoints> joints;

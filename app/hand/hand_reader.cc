@@ -10,19 +10,19 @@
 #include "app/core/data_folder.h"
 #include "app/core/sha256.h"
 #include "app/core/text.h"
+#include "app/hand/distance.h"
 #include "app/hand/hand_file.h"
 #include "app/hand/hand_kinematics.h"
-#include "app/hand/distance.h"
 
 namespace pregrasp {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSamePlace = 1e-7;        // [m]; the file's numbers carry nine decimals
-constexpr double kTipAtEnd = 1e-6;         // [m], of a capsule
-constexpr double kTipInside = 5e-4;        // [m], of what a fingertip may lie within its link
-constexpr double kTipFar = 2e-3;           // [m], of what it may be off it
+constexpr double kSamePlace = 1e-7;          // [m]; the file's numbers carry nine decimals
+constexpr double kTipAtEnd = 1e-6;           // [m], of a capsule
+constexpr double kTipInside = 5e-4;          // [m], of what a fingertip may lie within its link
+constexpr double kTipFar = 2e-3;             // [m], of what it may be off it
 constexpr std::size_t kMaxUrdf = 4U << 20U;  // [bytes]
 constexpr int kMaxNesting = 100;
 
@@ -85,9 +85,11 @@ fs::path FindFile(const fs::path& file, const fs::path& description, const std::
   std::error_code error;
   const fs::path found = fs::canonical(file, error);
   if (error || !fs::is_regular_file(found, error)) {
-    throw InputError(description.string(), what, "a file", '"' + file.string() + "\", which does not exist");
+    throw InputError(description.string(), what, "a file",
+                     '"' + file.string() + "\", which does not exist");
   }
-  for (const fs::path& folder : {fs::absolute(description).parent_path(), DataFolder() / "assets" / "hands"}) {
+  for (const fs::path& folder :
+       {fs::absolute(description).parent_path(), DataFolder() / "assets" / "hands"}) {
     const fs::path root = fs::weakly_canonical(folder, error);
     const fs::path relative = found.lexically_relative(root);
     if (!relative.empty() && *relative.begin() != "..") return file;
@@ -127,12 +129,14 @@ class Reader {
     ParseUrdf(text);
     model_.name = description_.name;
     model_.file = description_.file;
+    model_.files = {description_.file, file};
     model_.sha256 = Sha256(Sha256OfFile(description_.file) + Sha256(text));
     model_.forearm = description_.forearm;
     ReadTree();
     if (!reading_.faults.empty()) return;  // what follows is about the links of a tree
     for (int link = 0; link < model_.num_links(); ++link) ReadLink(link);
-    for (const auto& [link, capsules] : description_.capsules) RequireLink(link, "capsules." + link);
+    for (const auto& [link, capsules] : description_.capsules)
+      RequireLink(link, "capsules." + link);
     for (int f = 0; f < model_.num_fingers; ++f) ReadTip(static_cast<Finger>(f));
     SortCapsules();
     ReadPosture();
@@ -185,7 +189,8 @@ class Reader {
     if (!RequireLink(description_.palm, "palm.link")) return;
     model_.num_fingers = static_cast<int>(description_.fingers.size());
     model_.links[0].name = description_.palm;
-    X_LU_[0] = MakeTransform(RotationOf(description_.palm_frame), description_.palm_frame.p).inverse();
+    X_LU_[0] =
+        MakeTransform(RotationOf(description_.palm_frame), description_.palm_frame.p).inverse();
     if (!NeedsTurning(description_.palm_frame)) X_LU_[0] = RigidTransform::Identity();
     std::set<std::string> used;
     for (int i = 1; i <= model_.num_fingers; ++i) {
@@ -251,9 +256,9 @@ class Reader {
   void ReadMovement(const urdf::Joint& joint, const std::string& name, int index) {
     HandJoint& out = model_.joints[index];
     if (joint.mimic) {
-      AddUrdfFault(name, "a joint that is driven by itself",
-                   "one that follows \"" + joint.mimic->joint_name +
-                       "\" (mimic): make it free, or fixed");
+      AddUrdfFault(
+          name, "a joint that is driven by itself",
+          "one that follows \"" + joint.mimic->joint_name + "\" (mimic): make it free, or fixed");
     }
     if (joint.type != urdf::Joint::REVOLUTE || !joint.limits) {
       AddUrdfFault(name, "a revolute joint with limits", TypeName(joint));
@@ -282,11 +287,16 @@ class Reader {
 
   static std::string TypeName(const urdf::Joint& joint) {
     switch (joint.type) {
-      case urdf::Joint::REVOLUTE: return "one without limits";
-      case urdf::Joint::CONTINUOUS: return "a continuous one";
-      case urdf::Joint::PRISMATIC: return "a prismatic one";
-      case urdf::Joint::FIXED: return "a fixed one";
-      default: return "another type";
+      case urdf::Joint::REVOLUTE:
+        return "one without limits";
+      case urdf::Joint::CONTINUOUS:
+        return "a continuous one";
+      case urdf::Joint::PRISMATIC:
+        return "a prismatic one";
+      case urdf::Joint::FIXED:
+        return "a fixed one";
+      default:
+        return "another type";
     }
   }
 
@@ -385,6 +395,9 @@ class Reader {
         reading_.faults.push_back(error);
         return;
       }
+      if (std::find(model_.files.begin(), model_.files.end(), shape.file) == model_.files.end()) {
+        model_.files.emplace_back(shape.file);
+      }
       out.shape = shape;
       out.scale = FromUrdf(mesh->scale);
     } else if (const auto box = std::dynamic_pointer_cast<urdf::Box>(visual.geometry)) {
@@ -472,11 +485,16 @@ class Reader {
   }
   static std::string KindOf(const urdf::Collision& shape) {
     switch (shape.geometry ? shape.geometry->type : -1) {
-      case urdf::Geometry::BOX: return "box";
-      case urdf::Geometry::CYLINDER: return "cylinder";
-      case urdf::Geometry::SPHERE: return "sphere";
-      case urdf::Geometry::MESH: return "mesh";
-      default: return "shape that it does not name";
+      case urdf::Geometry::BOX:
+        return "box";
+      case urdf::Geometry::CYLINDER:
+        return "cylinder";
+      case urdf::Geometry::SPHERE:
+        return "sphere";
+      case urdf::Geometry::MESH:
+        return "mesh";
+      default:
+        return "shape that it does not name";
     }
   }
 
@@ -505,7 +523,8 @@ class Reader {
                  fmt::format("one whose end lies {:.1f} mm within {}", 1e3 * inside, capsule.name));
         return;
       }
-      const double off = std::min((capsule.p_LA - tip.p_LT).norm(), (capsule.p_LB - tip.p_LT).norm());
+      const double off =
+          std::min((capsule.p_LA - tip.p_LT).norm(), (capsule.p_LB - tip.p_LT).norm());
       if (off < kTipAtEnd && std::abs(capsule.radius - tip.radius) < kSamePlace) {
         tip.capsule = static_cast<int>(i);
       }

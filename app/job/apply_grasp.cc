@@ -104,8 +104,8 @@ LiftFacts MakeLiftFacts(const Application& a, int number, const LiftResult& lift
   facts.neighbours = MakeNeighbourFacts(lift.neighbours, a.job.scene());
   facts.neighbour_moved_mm = 1e3 * lift.neighbour_moved;
   facts.neighbour_turned_deg = lift.neighbour_turned_deg;
-  facts.hand =
-      MakeHandFacts(a.job.hand(), a.next.grasps->grasps[number - 1].result.kinematics->ik.configuration());
+  facts.hand = MakeHandFacts(
+      a.job.hand(), a.next.grasps->grasps[number - 1].result.kinematics->ik.configuration());
   return facts;
 }
 

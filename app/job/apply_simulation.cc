@@ -14,7 +14,8 @@ Finger ReadFinger(const CommandOptions& options, const TipSpheres& tips) {
   const std::string name = options.Text("finger");
   const auto end = kFingerNames.begin() + tips.count;
   const auto found = std::find(kFingerNames.begin(), end, name);
-  if (found == end) throw InputError("", "finger", "the name of a finger of the hand", '"' + name + '"');
+  if (found == end)
+    throw InputError("", "finger", "the name of a finger of the hand", '"' + name + '"');
   return static_cast<Finger>(found - kFingerNames.begin());
 }
 

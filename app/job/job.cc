@@ -64,8 +64,8 @@ const RobustWorlds& Job::robust_worlds() {
 std::shared_ptr<const Planner> Job::GetPlanner(const WorldState& start,
                                                const PlannerConfig& config) {
   if (!planner_ || !SamePoses(planner_->start(), start) || !SameBase(planner_->config(), config)) {
-    planner_ = std::make_shared<const Planner>(world_, hand(), start, config, setup_.seed,
-                                               pool(), setup_.weights);
+    planner_ = std::make_shared<const Planner>(world_, hand(), start, config, setup_.seed, pool(),
+                                               setup_.weights);
   }
   return planner_;
 }

@@ -131,7 +131,7 @@ class Space {
     for (const StepFacts* step : steps) poses.push_back(step == nullptr ? Json() : StepJson(*step));
     return {
         {"meshes", std::move(meshes_)},  {"bodies", std::move(bodies_)}, {"hand", std::move(hand_)},
-        {"links", model_.num_links()},        {"upright", UprightJson()},     {"force", ForceJson()},
+        {"links", model_.num_links()},   {"upright", UprightJson()},     {"force", ForceJson()},
         {"fingers", std::move(fingers)}, {"steps", std::move(poses)},    {"film", FilmJson()}};
   }
 

@@ -210,7 +210,8 @@ void PictureMaker::Impl::AddFinger(RenderScene& picture, const StepFacts& step,
   const Vector3 nhat_W = step.object().q_WB * finger.nhat_O;
   const Vector3 to_viewer_W = (picture.camera.p_WCam - finger.p_WF).normalized();
   if (config.fingers) {
-    for (RenderBody& body : MakeFingerStub(finger.finger, scene.tips.radius(finger.finger), finger.p_WF, nhat_W, to_viewer_W)) {
+    for (RenderBody& body : MakeFingerStub(finger.finger, scene.tips.radius(finger.finger),
+                                           finger.p_WF, nhat_W, to_viewer_W)) {
       picture.bodies.push_back(std::move(body));
     }
   }
@@ -313,7 +314,8 @@ CameraConfig PictureMaker::FrameSteps(const std::vector<const StepFacts*>& shown
     PictureOverlay overlay = Chosen(MakeOverlay(*step, steps, impl_->hand), config);
     // Of the hand's motion what touches: the hand comes from far off.
     if (const auto* frame = std::get_if<FrameFacts>(&step->details)) {
-      overlay.focus_W = frame->touching.empty() ? MatrixX3(0, 3) : LinkOrigins(impl_->hand, frame->hand);
+      overlay.focus_W =
+          frame->touching.empty() ? MatrixX3(0, 3) : LinkOrigins(impl_->hand, frame->hand);
     }
     // Corners of a box do: a mesh may have any number of points.
     const MatrixX3 seen_U = impl_->FindFocus(*step, overlay) * impl_->R_UW.transpose();

@@ -51,11 +51,13 @@ std::string MotionHeader(const HandModel& hand) {
   AppendPoseNames(header, "O");
   AppendPoseNames(header, "H");
   for (int j = 0; j < hand.num_joints; ++j) header.append(",").append(hand.joints[j].name);
-  for (int f = 0; f < hand.num_fingers; ++f) header.append(",").append(kFingerNames[f]).append("_on");
+  for (int f = 0; f < hand.num_fingers; ++f)
+    header.append(",").append(kFingerNames[f]).append("_on");
   return header + ",phase,clearance_mm,tip_error_mm,loosened,simulated_t\n";
 }
 
-std::string MotionRow(const HandModel& hand, const MotionFrameTask& task, const MotionFrame& frame) {
+std::string MotionRow(const HandModel& hand, const MotionFrameTask& task,
+                      const MotionFrame& frame) {
   std::string row = FormatDouble(task.t);
   AppendCells(row, task.X_WB.front());
   AppendCells(row, frame.configuration.X_WH);
@@ -76,7 +78,8 @@ std::vector<MotionRecord> ReadMotionTable(const std::filesystem::path& file,
   std::string line;
   std::getline(lines, line);
   if (line + '\n' != MotionHeader(hand)) {
-    throw InputError(file.string() + ":1", "", "the header of a motion.csv of this hand", OneLine(line));
+    throw InputError(file.string() + ":1", "", "the header of a motion.csv of this hand",
+                     OneLine(line));
   }
   std::vector<MotionRecord> records;
   for (int number = 2; std::getline(lines, line); ++number) {

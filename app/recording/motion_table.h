@@ -31,8 +31,8 @@ struct MotionRecord {
   double simulated_t = 0.0;  ///< [s]
 };
 
-/// All lines of a motion.csv of that hand. @throws InputError with the file, its line and what was expected.
-std::vector<MotionRecord> ReadMotionTable(const std::filesystem::path& file,
-                                          const HandModel& hand);
+/// All lines of a motion.csv of that hand. @throws InputError with the file, its line and what was
+/// expected.
+std::vector<MotionRecord> ReadMotionTable(const std::filesystem::path& file, const HandModel& hand);
 
 }  // namespace pregrasp

@@ -19,9 +19,9 @@ std::string RolloutHeader(const Scene& scene);
 /// One line of it.
 std::string RolloutRow(const WorldState& state);
 
-/// The same for lift.csv, of all of the hand's fingers, each with FINGER_k and FINGER_b behind the others:
-/// stiffness [N/m] and damping [N s/m] of its spring. Of a finger that is off, all are 0 but for
-/// the z of the normal.
+/// The same for lift.csv, of all of the hand's fingers, each with FINGER_k and FINGER_b behind the
+/// others: stiffness [N/m] and damping [N s/m] of its spring. Of a finger that is off, all are 0
+/// but for the z of the normal.
 std::string LiftHeader(const Scene& scene);
 std::string LiftRow(const Scene& scene, const WorldState& state);
 

@@ -90,13 +90,17 @@ class ShapeWriter {
   std::string name_;
 };
 
-TriangleMesh ReadMesh(const JsonReader& file, const std::filesystem::path& directory) {
+std::filesystem::path FileInside(const JsonReader& file, const std::filesystem::path& directory) {
   const std::filesystem::path relative = file.Text();
   if (relative.is_absolute() || relative.lexically_normal() != relative ||
       *relative.begin() == "..") {
     file.Fail("a path inside the run directory");
   }
-  const std::filesystem::path path = directory / relative;
+  return directory / relative;
+}
+
+TriangleMesh ReadMesh(const JsonReader& file, const std::filesystem::path& directory) {
+  const std::filesystem::path path = FileInside(file, directory);
   return ParseObj(ReadFile(path), path.string());
 }
 
@@ -177,19 +181,35 @@ Json FingertipsToJson(const Scene& scene) {
           {"damping_N_s_per_m", b},      {"grasp_stiffness", tips.grasp_stiffness}};
 }
 
-Json HandToJson(const Scene& scene) {
+// The files of a hand that is not shipped, as they lie to each other, below `hand`.
+std::string CopyHand(const HandModel& hand, const std::filesystem::path& directory) {
+  const std::filesystem::path from = std::filesystem::absolute(hand.file).parent_path();
+  for (const std::filesystem::path& file : hand.files) {
+    const std::filesystem::path to =
+        "hand" / std::filesystem::absolute(file).lexically_normal().lexically_relative(
+                     from.lexically_normal());
+    if (to.lexically_normal().begin()->string() != "hand") continue;  // a shipped hand's
+    MakeFolder((directory / to).parent_path());
+    WriteFile(directory / to, ReadFile(file));
+  }
+  return "hand/" + hand.file.filename().string();
+}
+
+Json HandToJson(const Scene& scene, const std::filesystem::path& directory) {
   const HandModel& hand = HandOf(scene);
   Json joints = Json::array(), tips = Json::array();
   for (int j = 0; j < hand.num_joints; ++j) joints.push_back(hand.joints[j].name);
   for (int f = 0; f < hand.num_fingers; ++f) {
     tips.push_back({{"finger", kFingerNames[f]}, {"radius", hand.tips[f].radius}});
   }
-  return {{"name", scene.hand}, {"sha256", hand.sha256}, {"joints", joints}, {"tips", tips}};
+  const std::string name = IsHandFile(scene.hand) ? CopyHand(hand, directory) : scene.hand;
+  return {{"name", name}, {"sha256", hand.sha256}, {"joints", joints}, {"tips", tips}};
 }
 
 // A run shows and moves the hand that it was planned with, or none.
-void ReadHand(const JsonReader& reader, Scene& scene) {
+void ReadHand(const JsonReader& reader, const std::filesystem::path& directory, Scene& scene) {
   scene.hand = reader["name"].Text();
+  if (IsHandFile(scene.hand)) scene.hand = FileInside(reader["name"], directory).string();
   if (HandOf(scene).sha256 != reader["sha256"].Text()) {
     reader["sha256"].Fail("that of the hand \"" + scene.hand + "\" as it is now, " +
                           HandOf(scene).sha256);
@@ -208,7 +228,7 @@ void WriteScene(const std::filesystem::path& directory, const Scene& scene, doub
                      {"gravity", pregrasp::ToJson(scene.gravity)},
                      {"dt", dt},
                      {"fingertips", FingertipsToJson(scene)},
-                     {"hand", HandToJson(scene)},
+                     {"hand", HandToJson(scene, directory)},
                      {"camera", scene.camera ? CameraToJson(*scene.camera) : Json()},
                      {"bodies", std::move(bodies)}};
   WriteFile(directory / "scene.json", FormatJsonIndented(json));
@@ -230,7 +250,8 @@ Scene LoadScene(const std::filesystem::path& file) {
     scene.camera = CameraConfig{camera["p_WCam"].Vec3(), camera["p_WTarget"].Vec3(),
                                 camera["fov_deg"].Number()};
   }
-  if (document.contains("hand")) ReadHand(reader["hand"], scene);  // without, the default
+  if (document.contains("hand"))
+    ReadHand(reader["hand"], file.parent_path(), scene);  // without, the default
   TakeHand(scene);
   const JsonReader bodies = reader["bodies"];
   for (std::size_t i = 0; i < bodies.size(); ++i) {

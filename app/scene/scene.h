@@ -64,7 +64,7 @@ struct Scene {
   FingertipConfig fingertips;
   std::string hand = "shadow_right";  ///< a name below assets/hands, or a file (hand_model.h)
   TipSpheres tips;                    ///< that hand's
-  Vector3 gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
+  Vector3 gravity{0.0, 0.0, -9.81};   ///< [m/s^2]
   std::optional<CameraConfig> camera;
   std::string file;   ///< the scene file, as given; empty for a scene built in a script
   std::string where;  ///< file:line of the scene, for messages; may be empty

@@ -94,7 +94,8 @@ void Recorder::WriteTables(const Timeline::Node& node) {
   if (state->motion && state->motion_state->filled) {
     std::string table = MotionHeader(timeline_.job().hand());
     for (std::size_t i = 0; i < state->motion_state->frames.size(); ++i) {
-      table += MotionRow(timeline_.job().hand(), state->motion_state->task->frames[i], state->motion_state->frames[i]);
+      table += MotionRow(timeline_.job().hand(), state->motion_state->task->frames[i],
+                         state->motion_state->frames[i]);
     }
     WriteFile(run_.partial() / "motion.csv", table);
   }

@@ -184,8 +184,8 @@ Tensor GeneratorTask::CalcTipOverlap(int which, const Tensor& points, const Case
   for (std::size_t k = 1; k < fingers.size(); ++k) {
     const auto i = static_cast<std::int64_t>(k);
     if (fingers[k - 1] == Finger::kThumb) continue;  // on the other side of what is held
-    const double width = config_.contacts.position_scale *
-                         (tips.radius(fingers[k - 1]) + tips.radius(fingers[k]));
+    const double width =
+        config_.contacts.position_scale * (tips.radius(fingers[k - 1]) + tips.radius(fingers[k]));
     const Tensor apart = CalcDistances(points.select(1, i - 1), points.select(1, i));
     const Tensor both = sample.mask.select(1, i - 1) * sample.mask.select(1, i);
     overlap = overlap + ((width - apart).clamp_min(0.0) * both).mean();

@@ -96,9 +96,8 @@ DatasetItem MakeEmptyItem(const SceneObject& object, const PointCloud& cloud, st
 
 ContextRecord MakeContextRecord(const GraspWorld& world, const PointCloud& cloud,
                                 const std::vector<RigidTransform>& X_WB) {
-  const ObjectState state =
-      MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity,
-                      world.tips().radius(Finger::kIndex));
+  const ObjectState state = MakeObjectState(cloud, X_WB, world.environment(), world.scene().gravity,
+                                            world.tips().radius(Finger::kIndex));
   ContextRecord context;
   context.X_WO = X_WB.front();
   context.phi = state.phi;

@@ -134,7 +134,8 @@ class PushSampler {
       const auto finger = static_cast<Finger>(f);
       const FingertipState& tip = end.fingers[f];
       if (!stays && tip.on && tip.touching) {
-        if (CalcTipOverlap(end, finger, grasp_world_.tips().radius(finger), X_WB, grasp_world_.environment()) > kTipOverlapAllowed) {
+        if (CalcTipOverlap(end, finger, grasp_world_.tips().radius(finger), X_WB,
+                           grasp_world_.environment()) > kTipOverlapAllowed) {
           return std::nullopt;
         }
         const GraspContact contact = grasp_world_.ContactNear(finger, tip.p_OC);

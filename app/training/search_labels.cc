@@ -136,7 +136,8 @@ class StateLabeler {
                 [](const auto& a, const auto& b) { return a.finger < b.finger; });
       if (contacts.size() == 2) {
         const double span = (contacts[0].p_OC - contacts[1].p_OC).norm();
-        if (span > kPairSpan || CalcTipGap(grasp_world_.tips(), contacts[0], contacts[1]) < 0.0) continue;
+        if (span > kPairSpan || CalcTipGap(grasp_world_.tips(), contacts[0], contacts[1]) < 0.0)
+          continue;
       }
       LabelContacts(contacts);
       return;

@@ -112,9 +112,7 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
   cost.unrest =
       weights.unrest * std::min(2.0, end.v_WB.norm() / kRestSpeed + end.w_WB.norm() / kRestTurn);
   cost.speed = weights.speed * std::clamp(outcome.max_speed - kFastSpeed, 0.0, 2.0);
-  const auto by_radius = [](double depth) {
-    return std::clamp(depth / kDeep, 0.0, 1.0);
-  };
+  const auto by_radius = [](double depth) { return std::clamp(depth / kDeep, 0.0, 1.0); };
   cost.tip_overlap = weights.tip_overlap * by_radius(outcome.max_tip_overlap);
   cost.tip_spacing = weights.tip_spacing * by_radius(-outcome.min_tip_gap);
   double shift = 0.0, turn_deg = 0.0;

@@ -19,7 +19,8 @@ TipFits MakeTipFits(const MppiProblem& problem) {
   const EnvironmentDistance* environment = problem.environment;
   const SignedDistance* shape = problem.shape;
   std::vector<RigidTransform> X_WB = problem.world->GetPoses(problem.start);
-  return [=, tips = problem.world->scene().tips, X_WB = std::move(X_WB)](Finger finger, const Placement::Contact& contact) {
+  return [=, tips = problem.world->scene().tips, X_WB = std::move(X_WB)](
+             Finger finger, const Placement::Contact& contact) {
     const double radius = tips.radius(finger);
     const Vector3 p_WTip = X_WB.front() * tips.Centre(finger, contact.p_OC, contact.nhat_O);
     return HasRoom(radius, contact, *shape) &&

@@ -176,8 +176,8 @@ class PlanRunner {
   }
 
   bool Fits(Finger finger) const {
-    return CalcTipOverlap(state_, finger, tips_.radius(finger), world_.GetPoses(state_), environment_) <=
-           kTipOverlapAllowed;
+    return CalcTipOverlap(state_, finger, tips_.radius(finger), world_.GetPoses(state_),
+                          environment_) <= kTipOverlapAllowed;
   }
 
   void AddConvergence(const Convergence& convergence) {
@@ -233,8 +233,8 @@ class PlanRunner {
     bool overlaps = false;
     for (int j = 0; j < kNumPlanningFingers; ++j) {
       if (!state_.fingers[j].on) continue;
-      const double overlap = CalcTipOverlap(state_, static_cast<Finger>(j),
-                                            tips_.radii[j], X_WB, environment_);
+      const double overlap =
+          CalcTipOverlap(state_, static_cast<Finger>(j), tips_.radii[j], X_WB, environment_);
       PREGRASP_CHECK(std::isfinite(overlap), j, overlap);  // std::max passes over a NaN
       outcome_.max_tip_overlap = std::max(outcome_.max_tip_overlap, overlap);
       overlaps |= !(overlap <= kTipOverlapAllowed);

@@ -160,6 +160,7 @@ function pregrasp.union(parts) end
 ---@field object BodyTable what is to be grasped; has a mass
 ---@field environment BodyTable[] what is around it, at least one body
 ---@field fingertips? FingertipsTable
+---@field hand? string a hand's name or its hand.lua (docs/your_own_hand.md); shadow_right
 ---@field gravity? Vector3 {0, 0, -9.81} [m/s^2]
 ---@field camera? CameraTable pictures are framed automatically without
 
@@ -1232,8 +1233,9 @@ function pregrasp.wrench(options) end
 function pregrasp.ik(options) end
 
 ---@class IkOptions
----@field contacts IkContacts
+---@field contacts IkContacts of fingers that the hand has
 ---@field scene? Session without one only the hand itself is in the way
+---@field hand? string without a scene: a hand's name or its hand.lua (docs/your_own_hand.md); the Shadow Hand
 ---@field seed? integer 1
 ---@field max_starts? integer initial postures tried, 20
 ---@field near? IkResult begin with this hand and stay near it: an answer for contacts a little further on
@@ -1264,7 +1266,7 @@ function pregrasp.ik(options) end
 ---@field p Vector3
 ---@field q number[] {w, x, y, z}
 
----Joint angles by the hand's own names [rad].
+---Joint angles by the hand's own names [rad]; here those of the Shadow Hand.
 ---@class HandJoints
 ---@field FFJ4 number
 ---@field FFJ3 number

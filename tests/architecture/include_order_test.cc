@@ -35,7 +35,7 @@ const std::vector<std::pair<std::regex, std::set<std::string>>> kOwners = {
     {std::regex("torch/.*"), {"app/training"}},
     {std::regex("mrpt/.*"), {"app/recording"}},
     {std::regex("GL/.*"), {"render"}},
-    {std::regex("lua.*|lauxlib.*"), {"bindings"}},
+    {std::regex("lua.*|lauxlib.*"), {"app/core", "bindings"}},
     {std::regex("histedit.*"), {"bindings"}},
     {std::regex("openssl/.*"), {"app/core"}},
     {std::regex("httplib\\.h"), {"app/page"}},

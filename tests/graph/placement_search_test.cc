@@ -48,7 +48,7 @@ TEST_F(PlacementSearchTest, TheBestComeFirstAndNoneIsNearAnother) {
   EXPECT_GT(found.front().thumb().p_OC.x(), 0.08);
   for (std::size_t i = 0; i < found.size(); ++i) {
     ASSERT_TRUE(found[i].thumb().on && found[i].index().on);
-    EXPECT_GE(CalcTipGap(found[i]), 0.0);
+    EXPECT_GE(CalcTipGap(TipSpheres{}, found[i]), 0.0);
     EXPECT_LE((found[i].thumb().p_OC - found[i].index().p_OC).norm(), config_.max_tip_distance);
     for (std::size_t j = 0; j < i; ++j) {
       const double thumb = (found[i].thumb().p_OC - found[j].thumb().p_OC).norm();

@@ -23,7 +23,7 @@ SignedDistance MakeGroove(double gap) {
 }
 
 bool HasRoomAt(double gap, const Vector3& p_OC, const Vector3& nhat_O, Finger finger) {
-  return HasRoom(finger, {true, p_OC, nhat_O}, MakeGroove(gap));
+  return HasRoom(TipSpheres{}.radius(finger), {true, p_OC, nhat_O}, MakeGroove(gap));
 }
 
 TEST(HasRoomTest, InAGrooveThereIsRoomForATipThatIsNarrowerThanIt) {
@@ -31,7 +31,7 @@ TEST(HasRoomTest, InAGrooveThereIsRoomForATipThatIsNarrowerThanIt) {
   for (const double gap : {0.010, 0.0175, 0.0185, 0.025}) {
     const Vector3 wall(-0.5 * gap, 0.0, 0.025);
     EXPECT_EQ(HasRoomAt(gap, wall, Vector3::UnitX(), Finger::kIndex),
-              gap > 2.0 * FingertipRadius(Finger::kIndex) - kOwnOverlapAllowed)
+              gap > 2.0 * TipSpheres{}.radius(Finger::kIndex) - kOwnOverlapAllowed)
         << gap;
   }
   for (const double gap : {0.010, 0.025}) {  // on top and outside there always is

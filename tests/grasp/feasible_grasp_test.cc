@@ -68,13 +68,14 @@ TEST(FeasibleGraspTest, AFoundGraspStandsUpToEveryDemandCheckedByHand) {
   for (const GraspContact& contact : grasp.contacts) {
     const Fingertip& tip = hand.tip(contact.finger);
     touch.touching[static_cast<int>(contact.finger)] = true;
-    EXPECT_LE((pose.CalcPoint(tip.link, tip.p_LT) - X_WO * TipCentre(contact)).norm(), 2e-3);
+    EXPECT_LE((pose.CalcPoint(tip.link, tip.p_LT) - X_WO * TipCentre(TipSpheres{}, contact)).norm(),
+              2e-3);
     const double cosine = -pose.R_WL[tip.link].col(2).dot(X_WO.linear() * contact.nhat_O);
     EXPECT_GE(cosine, std::cos(DegToRad(60.0)) - 1e-9);
     for (const GraspContact& other : grasp.contacts) {
       if (other.finger == contact.finger) continue;
-      EXPECT_GE((TipCentre(contact) - TipCentre(other)).norm(),
-                FingertipRadius(contact.finger) + FingertipRadius(other.finger));
+      EXPECT_GE((TipCentre(TipSpheres{}, contact) - TipCentre(TipSpheres{}, other)).norm(),
+                TipSpheres{}.radius(contact.finger) + TipSpheres{}.radius(other.finger));
     }
   }
   EXPECT_TRUE(((ik.q - hand.q_lower).array() >= 0.0).all());
@@ -191,7 +192,7 @@ TEST(FeasibleGraspTest, ContactsThatAreNotNumbersNeverPass) {
   std::vector<GraspContact> contacts = CartonGrasp().contacts;
   contacts.back().p_OC.x() = nan;
   const GraspWorld& world = CartonWorld();
-  EXPECT_TRUE(std::isnan(FindNearestTips(contacts).gap));
+  EXPECT_TRUE(std::isnan(FindNearestTips(TipSpheres{}, contacts).gap));
   EXPECT_EQ(TestContacts(world, {}, contacts, world.StartPoses(), Rng(1, RngStream::kTest)).status,
             GraspStatus::kTipsTooClose);
 }
@@ -288,15 +289,15 @@ TEST(ContactSamplerTest, SetsArePlausible) {
       bool any_opposed = false;
       for (const GraspContact& a : *contacts) {
         EXPECT_NEAR(world.object().Calc(a.p_OC), 0.0, 1e-5);
-        EXPECT_TRUE(CanTouch(a.p_OC, a.nhat_O, FingertipRadius(a.finger), {}, world.object(),
+        EXPECT_TRUE(CanTouch(a.p_OC, a.nhat_O, TipSpheres{}.radius(a.finger), {}, world.object(),
                              world.environment(), world.StartPoses()));
         const int f = static_cast<int>(a.finger);
         any_opposed |= contacts->front().nhat_O.dot(a.nhat_O) < -0.9;
         for (const GraspContact& b : *contacts) {
           const int g = static_cast<int>(b.finger);
           if (f >= g) continue;
-          const double distance = (TipCentre(a) - TipCentre(b)).norm();
-          EXPECT_GE(distance, FingertipRadius(a.finger) + FingertipRadius(b.finger));
+          const double distance = (TipCentre(TipSpheres{}, a) - TipCentre(TipSpheres{}, b)).norm();
+          EXPECT_GE(distance, TipSpheres{}.radius(a.finger) + TipSpheres{}.radius(b.finger));
           EXPECT_LE(distance, world.reach().farthest[f][g]);
           if (near_share == 1.0 && f > 0) {
             EXPECT_LE(distance, 0.03 * (g - f) + 0.01 + 1e-12);

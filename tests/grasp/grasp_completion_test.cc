@@ -68,7 +68,7 @@ TEST_F(GraspCompletionTest, WhatItCallsFeasibleIsSoAndWithinTheMovesAllowed) {
   for (const CompletedGrasp& grasp : result.grasps) {
     EXPECT_EQ(grasp.source, GraspSource::kGenerator);
     ASSERT_EQ(grasp.projected.size(), 5U);
-    EXPECT_GE(FindNearestTips(grasp.projected).gap, 0.0);
+    EXPECT_GE(FindNearestTips(TipSpheres{}, grasp.projected).gap, 0.0);
     EXPECT_LE(grasp.moved, 0.010 + 1e-12);
     if (grasp.raw.feasible()) {
       EXPECT_TRUE(grasp.feasible());

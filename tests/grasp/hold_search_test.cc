@@ -99,7 +99,7 @@ TEST_F(HoldSearchTest, MostSetsThatRandomMovesRepairAreRepaired) {
       contacts.push_back(OnRulerFace(finger, finger == Finger::kThumb ? 1 : -1,
                                      rng.Uniform(-0.05, 0.05), rng.Uniform(-0.01, 0.01)));
     }
-    if (!(FindNearestTips(contacts).gap >= 0.0) || Holds(contacts)) continue;
+    if (!(FindNearestTips(TipSpheres{}, contacts).gap >= 0.0) || Holds(contacts)) continue;
     const auto choices = FindChoices(places_, contacts, {}, 0.010);
     bool can = false;
     for (int trial = 0; trial < 300 && !can; ++trial) {

@@ -18,8 +18,10 @@ void ExpectPlaces(const ContactPlaces& places, const std::vector<GraspContact>& 
     EXPECT_NEAR(places.world().object().Calc(contact.p_OC), 0.0, 1e-6);
     EXPECT_TRUE(places.Allows(contact)) << FingerName(contact.finger);
     for (int g = 0; g < f; ++g) {
-      const double apart = (TipCentre(contact) - TipCentre(contacts[g])).norm();
-      EXPECT_GE(apart, FingertipRadius(contact.finger) + FingertipRadius(contacts[g].finger))
+      const double apart =
+          (TipCentre(TipSpheres{}, contact) - TipCentre(TipSpheres{}, contacts[g])).norm();
+      EXPECT_GE(apart,
+                TipSpheres{}.radius(contact.finger) + TipSpheres{}.radius(contacts[g].finger))
           << FingerName(contact.finger) << " and " << FingerName(contacts[g].finger);
     }
   }

@@ -29,7 +29,7 @@ void ExpectProof(const StartCertificate& certificate) {
 // A sphere that lies on the table and touches a slab's top edge leans down by asin(1 - h / r), and
 // its cone reaches up from there by atan(mu). The proof draws 32 edges around the cone.
 double EdgeLimit(double thickness) {
-  const double sine = 1.0 - thickness / FingertipRadius(Finger::kIndex);
+  const double sine = 1.0 - thickness / TipSpheres{}.radius(Finger::kIndex);
   return sine / std::sqrt(1.0 - sine * sine) * std::cos(kPi / 32.0);
 }
 

@@ -51,7 +51,7 @@ TEST_F(StiffnessSearchTest, ContactsInALineArePartedUntilTheRulerDoesNotTurnOver
   ASSERT_TRUE(Run(choices, 40, choice));
   const std::vector<GraspContact> moved = ToContacts(choices, choice);
   EXPECT_TRUE(Holds(moved));
-  EXPECT_GE(FindNearestTips(moved).gap, 0.0);
+  EXPECT_GE(FindNearestTips(TipSpheres{}, moved).gap, 0.0);
   EXPECT_GT(CalcLeast(moved).value,
             forces_.min_stiffness * world_.scene().fingertips.grasp_stiffness);
   for (std::size_t i = 0; i < contacts.size(); ++i) {

@@ -89,7 +89,7 @@ TEST(CertificateTest, TheRelaxedAndTheZeroPostureAreFree) {
   const HandCertificate certificate(ShadowHand(), {});
   EXPECT_TRUE(certificate.FindCollisions({}, {}, {}).empty());
   HandConfiguration relaxed;
-  relaxed.q = RelaxedPosture();
+  relaxed.q = ShadowHand().posture;
   EXPECT_TRUE(certificate.FindCollisions(relaxed, {}, {}).empty());
 }
 

@@ -32,7 +32,7 @@ std::vector<std::string> FindFaults(const HandModel& hand, const std::vector<con
   for (int j = 0; j < kMaxHandJoints; ++j) {
     const double q = configuration.q[j];
     if (q < hand.joints[j].lower || q > hand.joints[j].upper) {
-      faults.push_back(fmt::format("{} = {} beyond its limits", kHandJointNames[j], q));
+      faults.push_back(fmt::format("{} = {} beyond its limits", ShadowHand().joints[j].name, q));
     }
   }
   std::array<bool, kMaxHandCapsules> touches{};

@@ -24,7 +24,7 @@ class ForearmTest : public ::testing::Test {
   bool IsFree(const Vector3& p_WBall, const Vector3& p_WH) const {
     const std::vector<RigidTransform> X_WB = {At(p_WBall), At({0.0, 0.0, -0.01})};
     const Matrix3 R_WH = RotationFromRpy({0.0, 0.5 * kPi, 0.0});  // its z along +x
-    return Forearm(scene_).IsFree(X_WB, MakeTransform(R_WH, p_WH));
+    return Forearm(scene_, ShadowHand()).IsFree(X_WB, MakeTransform(R_WH, p_WH));
   }
 
   static RigidTransform At(const Vector3& p) { return MakeTransform(Quaternion::Identity(), p); }

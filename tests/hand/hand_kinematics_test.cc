@@ -14,6 +14,9 @@ HandPose PoseOf(const HandConfiguration& configuration) {
   return pose;
 }
 
+// The vendor's tip frames, in the distal links'.
+Vector3 VendorTip(int finger) { return {0.0, 0.0, finger == 0 ? 0.0275 : 0.026}; }
+
 // From the vendor's description, joints at zero, palm frame; the little finger's last digit differs
 // between descriptions.
 TEST(HandKinematicsTest, FingertipFramesAtZeroAreTheVendors) {
@@ -23,13 +26,14 @@ TEST(HandKinematicsTest, FingertipFramesAtZeroAreTheVendors) {
       Vector3(-0.011, 0.0, 0.191), Vector3(-0.033, 0.0, 0.1826)};
   for (int f = 0; f < kNumFingers; ++f) {
     const Fingertip& tip = ShadowHand().tips[f];
-    EXPECT_LT((pose.CalcPoint(tip.link, tip.p_LTip) - expected[f]).norm(), 1e-4) << kFingerNames[f];
+    EXPECT_LT((pose.CalcPoint(tip.link, VendorTip(f)) - expected[f]).norm(), 1e-4)
+        << kFingerNames[f];
   }
 }
 
 TEST(HandKinematicsTest, PositiveFlexionBringsEveryTipToThePalmarSide) {
   for (int f = 0; f < kNumFingers; ++f) {
-    const auto [first, count] = kFingerJoints[f];
+    const auto [first, count] = ShadowHand().fingers[f];
     for (const int j : {first + count - 1, first + count - 2}) {
       if (kFingerNames[f] == std::string("thumb") && j == first + count - 2) continue;  // abducts
       HandConfiguration bent;
@@ -38,9 +42,9 @@ TEST(HandKinematicsTest, PositiveFlexionBringsEveryTipToThePalmarSide) {
       const HandPose zero = PoseOf({});
       const Vector3 moved_L =
           zero.R_WL[tip.link].transpose() *
-          (PoseOf(bent).CalcPoint(tip.link, tip.p_LTip) - zero.CalcPoint(tip.link, tip.p_LTip));
-      EXPECT_LT(moved_L.y(), -0.002) << kHandJointNames[j];
-      EXPECT_LT(std::abs(moved_L.x()), 1e-9) << kHandJointNames[j];
+          (PoseOf(bent).CalcPoint(tip.link, VendorTip(f)) - zero.CalcPoint(tip.link, VendorTip(f)));
+      EXPECT_LT(moved_L.y(), -0.002) << ShadowHand().joints[j].name;
+      EXPECT_LT(std::abs(moved_L.x()), 1e-9) << ShadowHand().joints[j].name;
     }
   }
 }

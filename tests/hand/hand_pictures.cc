@@ -60,7 +60,7 @@ std::vector<IkContact> Around(double radius, const std::vector<std::array<double
 }
 
 std::vector<Pose> Poses() {
-  const HandJoints relaxed = RelaxedPosture();
+  const HandJoints relaxed = ShadowHand().posture;
   const HandJoints open = Free({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, 0});
   const HandJoints spread =
       Free({-18, 0, 0, 0, -2, 0, 0, 0, -12, 0, 0, 0, 0, -20, 0, 0, 0, -40, 20, 0, -20, 0});
@@ -96,7 +96,7 @@ RenderScene MakeScene(const Pose& pose, bool capsules) {
   // The hand stands upright, palm to the camera's side.
   const RigidTransform X_WH = MakeTransform(Matrix3::Identity(), Vector3(0.0, 0.0, 0.08));
   RenderScene scene;
-  AddHand(scene, {X_WH, pose.q});
+  AddHand(scene, ShadowHand(), {X_WH, pose.q});
   if (pose.object) {
     RenderBody body;
     body.mesh = pose.object;

@@ -39,39 +39,50 @@ double CalcVolume(const TriangleMesh& mesh) {
   return sum;
 }
 
+using Meshes = std::vector<std::pair<std::string, TriangleMesh>>;
+const std::map<std::string, Meshes> kMeshes = {{"shadow_right", BuildShadowMeshes()},
+                                               {"four_finger", BuildFourFingerMeshes()}};
+
 TEST(HandMeshesTest, TheCommittedFilesAreWhatTheGeneratorMakes) {
-  for (const auto& [name, mesh] : BuildHandMeshes()) {
-    EXPECT_EQ(ReadFile(kAssets / "hands/shadow_right/meshes" / (name + ".obj")), FormatObj(mesh, 6))
-        << name << ": run pregrasp-hand-meshes assets/hands/shadow_right/meshes, then mend assets/MANIFEST";
+  for (const auto& [hand, meshes] : kMeshes) {
+    for (const auto& [name, mesh] : meshes) {
+      EXPECT_EQ(ReadFile(kAssets / "hands" / hand / "meshes" / (name + ".obj")), FormatObj(mesh, 6))
+          << name << ": run pregrasp-hand-meshes assets/hands, then mend assets/MANIFEST";
+    }
   }
 }
 
 TEST(HandMeshesTest, EveryMeshIsClosedAndOutward) {
-  for (const auto& [name, mesh] : BuildHandMeshes()) {
-    std::map<std::pair<int, int>, int> edges;
-    for (Eigen::Index i = 0; i < mesh.F.rows(); ++i) {
-      for (int k = 0; k < 3; ++k) ++edges[{mesh.F(i, k), mesh.F(i, (k + 1) % 3)}];
+  for (const auto& [hand, meshes] : kMeshes) {
+    for (const auto& [name, mesh] : meshes) {
+      std::map<std::pair<int, int>, int> edges;
+      for (Eigen::Index i = 0; i < mesh.F.rows(); ++i) {
+        for (int k = 0; k < 3; ++k) ++edges[{mesh.F(i, k), mesh.F(i, (k + 1) % 3)}];
+      }
+      for (const auto& [edge, count] : edges) {
+        ASSERT_EQ(count, 1) << name;
+        ASSERT_EQ(edges.count({edge.second, edge.first}), 1U) << name;
+      }
+      EXPECT_GT(CalcVolume(mesh), 1e-7) << name;
+      EXPECT_LT(CalcVolume(mesh), 4e-4) << name;
     }
-    for (const auto& [edge, count] : edges) {
-      ASSERT_EQ(count, 1) << name;
-      ASSERT_EQ(edges.count({edge.second, edge.first}), 1U) << name;
-    }
-    EXPECT_GT(CalcVolume(mesh), 1e-7) << name;
-    EXPECT_LT(CalcVolume(mesh), 3e-4) << name;
   }
 }
 
 // What a picture shows is what the collision checks see: the drawn hand lies within 2.5 mm of the
 // capsules, and reaches every fingertip.
-TEST(HandShapesTest, TheDrawnHandIsTheCollisionHand) {
+class HandShapesTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(HandShapesTest, TheDrawnHandIsTheCollisionHand) {
+  const HandModel& hand = FindHand(GetParam());
   HandConfiguration relaxed;
-  relaxed.q = RelaxedPosture();
+  relaxed.q = hand.posture;
   HandPose pose;
-  CalcHandPose(ShadowHand(), relaxed.X_WH, relaxed.q, &pose);
-  const auto X_WL = CalcLinkPoses(ShadowHand(), relaxed);
+  CalcHandPose(hand, relaxed.X_WH, relaxed.q, &pose);
+  const auto X_WL = CalcLinkPoses(hand, relaxed);
   const auto outside = [&](const Vector3& p_W) {
     double least = 1.0;
-    for (const HandCapsule& capsule : ShadowHand().capsules) {
+    for (const HandCapsule& capsule : hand.capsules) {
       const Vector3 a = pose.CalcPoint(capsule.link, capsule.p_LA);
       const Vector3 b = pose.CalcPoint(capsule.link, capsule.p_LB);
       const double t =
@@ -83,28 +94,31 @@ TEST(HandShapesTest, TheDrawnHandIsTheCollisionHand) {
   std::array<double, kNumFingers> to_tip;
   to_tip.fill(1.0);
   double worst = 0.0;
-  for (const HandShape& shape : ShadowHandShapes()) {
+  for (const HandShape& shape : ShapesOf(hand)) {
     for (Eigen::Index i = 0; i < shape.mesh->V.rows(); ++i) {
       const Vector3 p_W = X_WL[shape.link] * Vector3(shape.mesh->V.row(i).transpose());
       worst = std::max(worst, outside(p_W));
       EXPECT_LT(outside(p_W), 2.5e-3)
-          << ShadowHand().links[shape.link].name << " at " << shape.mesh->V.row(i);
-      for (int f = 0; f < kNumFingers; ++f) {
-        const Fingertip& tip = ShadowHand().tips[f];
+          << hand.links[shape.link].name << " at " << shape.mesh->V.row(i);
+      for (int f = 0; f < hand.num_fingers; ++f) {
+        const Fingertip& tip = hand.tips[f];
         const Vector3 top = pose.CalcPoint(tip.link, tip.p_LT + Vector3(0.0, 0.0, tip.radius));
         to_tip[f] = std::min(to_tip[f], (p_W - top).norm());
       }
     }
   }
   RecordProperty("worst_mm", std::to_string(1e3 * worst));
-  for (int f = 0; f < kNumFingers; ++f) EXPECT_LT(to_tip[f], 5e-4) << kFingerNames[f];
+  for (int f = 0; f < hand.num_fingers; ++f) EXPECT_LT(to_tip[f], 5e-4) << kFingerNames[f];
 }
 
-TEST(HandShapesTest, FingersShareTheirMeshes) {
+INSTANTIATE_TEST_SUITE_P(Hands, HandShapesTest,
+                         ::testing::Values("shadow_right", "shadow_left", "four_finger"));
+
+TEST(HandVisualsTest, FingersShareTheirMeshes) {
   std::map<const TriangleMesh*, int> uses;
-  for (const HandShape& shape : ShadowHandShapes()) ++uses[shape.mesh.get()];
-  EXPECT_EQ(uses.size(), BuildHandMeshes().size());
-  EXPECT_GT(ShadowHandShapes().size(), uses.size());
+  for (const HandShape& shape : ShapesOf(ShadowHand())) ++uses[shape.mesh.get()];
+  EXPECT_EQ(uses.size(), BuildShadowMeshes().size());
+  EXPECT_GT(ShapesOf(ShadowHand()).size(), uses.size());
 }
 
 TEST(AssetsTest, TheManifestHoldsEveryAssetWithItsHashLicenceAndOrigin) {

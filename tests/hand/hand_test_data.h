@@ -7,8 +7,8 @@ namespace pregrasp {
 
 /// Uniform inside the joint limits.
 inline HandJoints RandomJoints(const HandModel& hand, Rng& rng) {
-  HandJoints q;
-  for (int j = 0; j < kMaxHandJoints; ++j) q[j] = rng.Uniform(hand.q_lower[j], hand.q_upper[j]);
+  HandJoints q = HandJoints::Zero();
+  for (int j = 0; j < hand.num_joints; ++j) q[j] = rng.Uniform(hand.q_lower[j], hand.q_upper[j]);
   return q;
 }
 

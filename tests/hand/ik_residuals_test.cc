@@ -13,7 +13,7 @@ TEST(IkResidualsTest, TheNormalEquationsAreThoseOfTheCost) {
   const Shape ball(Sphere{0.03}), plate(Box{{0.4, 0.4, 0.01}});
   const IkSolver solver(ShadowHand(), std::vector<const Shape*>{&ball, &plate});
   HandConfiguration at;
-  at.q = RelaxedPosture();
+  at.q = ShadowHand().posture;
   HandPose pose;
   CalcHandPose(ShadowHand(), at.X_WH, at.q, &pose);
   const Fingertip& tip = ShadowHand().tip(Finger::kIndex);

@@ -142,7 +142,7 @@ TEST(IkTest, WithoutContactsItFindsAFreePoseNearTheReference) {
   problem.X_WB = {MakeTransform(Matrix3::Identity(), Vector3(0, 0, 0.05)),
                   MakeTransform(Matrix3::Identity(), Vector3(0, 0, -0.01))};
   problem.reference = HandConfiguration{MakeTransform(Matrix3::Identity(), Vector3(0.0, 0.05, 0.0)),
-                                        RelaxedPosture()};
+                                        ShadowHand().posture};
   problem.warm_start = problem.reference;
   EXPECT_EQ(solver.Evaluate({}, problem, *problem.reference).status, IkStatus::kCollision);
   const IkResult result = solver.Solve({}, problem, Rng(1, RngStream::kTest));

@@ -11,7 +11,7 @@ namespace {
 HandConfiguration HandAt(const Vector3& p_WH) {
   HandConfiguration hand;
   hand.X_WH.translation() = p_WH;
-  hand.q = RelaxedPosture();
+  hand.q = ShadowHand().posture;
   return hand;
 }
 

@@ -15,7 +15,7 @@ class DetourTest : public ::testing::Test {
   static HandConfiguration HandIn(double x) {
     HandConfiguration hand;
     hand.X_WH.translation() << x, 0.0, 0.0;
-    hand.q = RelaxedPosture();
+    hand.q = ShadowHand().posture;
     return hand;
   }
 

@@ -135,10 +135,11 @@ void AddRates(const HandModel& hand, const std::vector<AuditFrame>& frames, std:
        "wrist acceleration");
   take(rate * (after.w - before.w).norm(), kTurn.acceleration, &rates.turn_acceleration,
        "wrist turn acceleration");
-  for (int j = 0; j < kMaxHandJoints; ++j) {
-    take(std::abs(before.q[j]), hand.joints[j].max_speed, &rates.joint, kHandJointNames[j]);
+  for (int j = 0; j < hand.num_joints; ++j) {
+    take(std::abs(before.q[j]), hand.joints[j].max_speed, &rates.joint,
+         hand.joints[j].name.c_str());
     take(rate * std::abs(after.q[j] - before.q[j]), kJointAcceleration, &rates.joint_acceleration,
-         kHandJointNames[j]);
+         hand.joints[j].name.c_str());
   }
   constexpr double kRounding = 1e-9;
   rates.over += worst > 1.0 + kRounding;

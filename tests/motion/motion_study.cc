@@ -85,7 +85,8 @@ std::vector<AuditFrame> ReadFrames(const std::filesystem::path& directory, const
                                    const std::vector<TraceRow>& rows) {
   std::vector<AuditFrame> frames;
   std::size_t at = 0;
-  for (const MotionRecord& record : ReadMotionTable(directory / "motion.csv")) {
+  for (const MotionRecord& record :
+       ReadMotionTable(directory / "motion.csv", HandOf(world.scene()))) {
     std::size_t nearest = at;
     double least = 1e9;
     for (std::size_t i = at; i < rows.size(); ++i) {
@@ -173,7 +174,7 @@ void Make(const IkSolver& solver, const HandMotion& motion, const Scene& scene,
   motion.Smooth(state);
   const double smooth = timer();
   const MotionSummary summary = motion.Summarize(state);
-  const MotionAudit audit = AuditMotion(ShadowHand(), scene, FramesOf(state));
+  const MotionAudit audit = AuditMotion(HandOf(scene), scene, FramesOf(state));
   std::string rungs;  // of the frames: the number of the rung, x where the way to it is blocked
   for (const MotionFrame& frame : state.frames) {
     rungs += frame.way_clear ? static_cast<char>('0' + static_cast<int>(frame.rung)) : 'x';
@@ -206,7 +207,7 @@ void Make(const IkSolver& solver, const HandMotion& motion, const Scene& scene,
     for (int j = 0; j < kMaxHandJoints; ++j) {
       const double q = state.frames[at].configuration.q[j];
       if (q <= ShadowHand().q_lower[j] || q >= ShadowHand().q_upper[j]) {
-        fmt::print(" {}", kHandJointNames[j]);
+        fmt::print(" {}", ShadowHand().joints[j].name);
       }
     }
     fmt::print(" at a limit\n");
@@ -234,7 +235,8 @@ void Run(bool remake, const std::filesystem::path& directory, Tally* tally) {
   const std::vector<TraceRow> lift = ReadTrace(directory / "lift.csv", world);
   if (remake) {
     const double closing_t = FindClosing(lift);
-    const std::vector<MotionRecord> recorded = ReadMotionTable(directory / "motion.csv");
+    const std::vector<MotionRecord> recorded =
+        ReadMotionTable(directory / "motion.csv", HandOf(scene));
     // The recorded motion's grasp: the hand when the lift begins.
     HandConfiguration grasp;
     RigidTransform X_WO;
@@ -242,7 +244,7 @@ void Run(bool remake, const std::filesystem::path& directory, Tally* tally) {
       if (record.phase != MotionPhase::kClosing) continue;
       grasp = record.hand;
     }
-    const IkSolver solver(ShadowHand(), scene);
+    const IkSolver solver(HandOf(scene), scene);
     const HandMotion motion(solver,
                             BuildMotionTask(world, trace, {lift, closing_t, closing_t + 0.6}, {}),
                             grasp, {}, 1);
@@ -250,14 +252,14 @@ void Run(bool remake, const std::filesystem::path& directory, Tally* tally) {
     return;
   }
   trace.insert(trace.end(), lift.begin(), lift.end());
-  const MotionAudit audit = AuditMotion(ShadowHand(), scene, ReadFrames(directory, world, trace));
+  const MotionAudit audit = AuditMotion(HandOf(scene), scene, ReadFrames(directory, world, trace));
   Print(directory.string(), audit, "");
   tally->Add(audit);
 }
 
 void RunProblem(int number, Tally* tally) {
   const MotionProblem problem = MakeMotionProblem(static_cast<std::uint64_t>(number));
-  const IkSolver solver(ShadowHand(), problem.scene);
+  const IkSolver solver(HandOf(problem.scene), problem.scene);
   const HandMotion motion(solver, problem.task, problem.grasp, {}, 1);
   Make(solver, motion, problem.scene, fmt::format("problem {}", number), tally);
 }

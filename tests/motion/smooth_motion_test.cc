@@ -36,7 +36,7 @@ class SmoothMotionTest : public ::testing::Test {
   std::vector<HandConfiguration> Zigzag() const {
     std::vector<HandConfiguration> motion(kFrames);
     for (int i = 0; i < kFrames; ++i) {
-      motion[i].q = RelaxedPosture();
+      motion[i].q = ShadowHand().posture;
       motion[i].q[2] += i % 2 == 0 ? 0.0 : 0.1;
       motion[i].X_WH.translation() << 0.3 * i / (kFrames - 1.0), i % 2 == 0 ? 0.0 : 0.01, 0.0;
     }
@@ -100,10 +100,10 @@ TEST_F(SmoothMotionTest, WhatStandsInTheWayIsGoneRoundBetweenTheFramesToo) {
 
 TEST_F(SmoothMotionTest, AStillMotionStays) {
   std::vector<HandConfiguration> motion(8);
-  for (HandConfiguration& hand : motion) hand.q = RelaxedPosture();
+  for (HandConfiguration& hand : motion) hand.q = ShadowHand().posture;
   Smooth(Demands(motion), &motion);
   for (const HandConfiguration& hand : motion) {
-    EXPECT_TRUE(hand.q.isApprox(RelaxedPosture(), 1e-9));
+    EXPECT_TRUE(hand.q.isApprox(ShadowHand().posture, 1e-9));
     EXPECT_TRUE(hand.X_WH.isApprox(RigidTransform::Identity(), 1e-9));
   }
 }

@@ -66,7 +66,7 @@ TEST_F(PictureMakerTest, ShowsEveryBodyTheFingerItsForceAndWhereTheObjectWas) {
   // The force's arrow ends at the contact, and the fingertip touches there from outside.
   const Vector3 p_WF = step.fingers[1].p_WF;
   EXPECT_LT((scene.arrows[0].p_W + scene.arrows[0].v_W - p_WF).norm(), 1e-12);
-  const double radius = FingertipRadius(Finger::kIndex);
+  const double radius = TipSpheres{}.radius(Finger::kIndex);
   EXPECT_NEAR((scene.bodies[3].X_WB.translation() - p_WF).norm(), radius, 1e-12);
   ASSERT_EQ(scene.labels.size(), 2U);
   EXPECT_EQ(scene.labels[0].text.find("index 0."), 0U) << scene.labels[0].text;

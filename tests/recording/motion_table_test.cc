@@ -22,7 +22,7 @@ TEST(MotionTableTest, ARowHasAFieldForEveryNameOfTheHeader) {
   frame.clearance = 0.002;
   frame.solved = true;
   frame.rung = LooseningRung::kCone80;
-  const std::string header = MotionHeader(), row = MotionRow(task, frame);
+  const std::string header = MotionHeader(ShadowHand()), row = MotionRow(ShadowHand(), task, frame);
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
   EXPECT_EQ(header.rfind("t,p_WO_x,p_WO_y,p_WO_z,q_WO_w,", 0), 0U);
   EXPECT_NE(header.find(",FFJ4,FFJ3,"), std::string::npos);
@@ -46,7 +46,7 @@ class MotionTableReadTest : public ::testing::Test {
         MakeTransform(Quaternion(Eigen::AngleAxisd(2.5, Vector3(1.0, 2.0, 3.0).normalized())),
                       Vector3(0.1, -0.2, 0.3))};
     task.contacts[0].on = task.contacts[4].on = true;
-    return MotionRow(task, Frame());
+    return MotionRow(ShadowHand(), task, Frame());
   }
 
   static MotionFrame Frame() {
@@ -64,7 +64,7 @@ class MotionTableReadTest : public ::testing::Test {
   std::string ErrorOf(const std::string& text) const {
     WriteFile(file_, text);
     try {
-      ReadMotionTable(file_);
+      ReadMotionTable(file_, ShadowHand());
     } catch (const InputError& error) {
       return error.what();
     }
@@ -76,8 +76,8 @@ class MotionTableReadTest : public ::testing::Test {
 };
 
 TEST_F(MotionTableReadTest, WhatWasWrittenIsReadBack) {
-  WriteFile(file_, MotionHeader() + Row() + Row());
-  const std::vector<MotionRecord> records = ReadMotionTable(file_);
+  WriteFile(file_, MotionHeader(ShadowHand()) + Row() + Row());
+  const std::vector<MotionRecord> records = ReadMotionTable(file_, ShadowHand());
   ASSERT_EQ(records.size(), 2U);
   const MotionRecord& record = records[1];
   EXPECT_EQ(record.t, 1.0 / 3.0);
@@ -99,13 +99,15 @@ TEST_F(MotionTableReadTest, WhatIsNoMotionIsRefusedWithItsLine) {
     return other.replace(other.find(word), word.size(), by);
   };
   EXPECT_NE(ErrorOf("t,x\n").find("motion.csv:1"), std::string::npos);
-  EXPECT_NE(ErrorOf(MotionHeader() + row + replaced("closing", "waving")).find("motion.csv:3"),
+  EXPECT_NE(ErrorOf(MotionHeader(ShadowHand()) + row + replaced("closing", "waving"))
+                .find("motion.csv:3"),
             std::string::npos);
-  EXPECT_NE(ErrorOf(MotionHeader() + row.substr(0, row.rfind(','))), "");
-  EXPECT_NE(ErrorOf(MotionHeader() + row.substr(0, row.size() - 1) + ",0\n"), "");
-  EXPECT_NE(ErrorOf(MotionHeader() + replaced(",closing,1.25", ",closing,nan")), "");
-  EXPECT_NE(ErrorOf(MotionHeader() + replaced(",6,0.7", ",7,0.7")), "");  // no such rung
-  EXPECT_NE(ErrorOf(MotionHeader() + replaced(",6,0.7", ",6,soon")), "");
+  EXPECT_NE(ErrorOf(MotionHeader(ShadowHand()) + row.substr(0, row.rfind(','))), "");
+  EXPECT_NE(ErrorOf(MotionHeader(ShadowHand()) + row.substr(0, row.size() - 1) + ",0\n"), "");
+  EXPECT_NE(ErrorOf(MotionHeader(ShadowHand()) + replaced(",closing,1.25", ",closing,nan")), "");
+  EXPECT_NE(ErrorOf(MotionHeader(ShadowHand()) + replaced(",6,0.7", ",7,0.7")),
+            "");  // no such rung
+  EXPECT_NE(ErrorOf(MotionHeader(ShadowHand()) + replaced(",6,0.7", ",6,soon")), "");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(RolloutTableTest, TheLiftsTableHasAllFiveFingersWithTheirSpringsToTheLastBi
   const std::string header = LiftHeader(SampleScene());
   for (int i = 0; i < 6; ++i) {
     const WorldState state = SampleState(i);
-    const auto row = ReadRow(header, LiftRow(state));
+    const auto row = ReadRow(header, LiftRow(SampleScene(), state));
     EXPECT_EQ(row.at("t"), state.t);
     EXPECT_EQ(VectorOf(row, "p_WO"), state.bodies[0].p_WB);
     EXPECT_EQ(row.at("q_WO_w"), state.bodies[0].q_WB.w());
@@ -65,7 +65,7 @@ TEST(RolloutTableTest, BodiesAndContactsAreReadBackFromBothTables) {
     std::ofstream out(file);
     out << (lift ? LiftHeader(scene) : RolloutHeader(scene));
     for (int i = 0; i < 3; ++i) {
-      out << (lift ? LiftRow(SampleState(i)) : RolloutRow(SampleState(i)));
+      out << (lift ? LiftRow(SampleScene(), SampleState(i)) : RolloutRow(SampleState(i)));
     }
     out.close();
     const std::vector<BodyRow> rows = ReadBodyRows(file, scene);
@@ -110,7 +110,7 @@ TEST(RolloutTableTest, ADamagedTableIsNamedWithItsLine) {
 TEST(RolloutTableTest, TheRolloutsTableHasTheLiftsColumnsOfThumbAndIndexButForTheirSprings) {
   const WorldState state = SampleState(3);
   const auto rollout = ReadRow(RolloutHeader(SampleScene()), RolloutRow(state));
-  const auto lift = ReadRow(LiftHeader(SampleScene()), LiftRow(state));
+  const auto lift = ReadRow(LiftHeader(SampleScene()), LiftRow(SampleScene(), state));
   for (const auto& [name, value] : rollout) EXPECT_EQ(lift.at(name), value) << name;
   EXPECT_EQ(lift.size() - rollout.size(), 3U * 15U + 2U * 2U);
 }

@@ -50,7 +50,7 @@ ReplayResult ReplayFiles(const World& world, const std::vector<TraceRow>& trace,
                          std::vector<ReplayRow>& rows) {
   const TestFolder folder;
   std::string table = LiftHeader(world.scene());
-  for (const TraceRow& row : trace) table += LiftRow(row.state);
+  for (const TraceRow& row : trace) table += LiftRow(world.scene(), row.state);
   std::ofstream(folder.path() / "lift.csv") << table;
   WriteScene(folder.path(), world.scene(), world.config().dt);
   const Scene scene = LoadScene(folder.path() / "scene.json");

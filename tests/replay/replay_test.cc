@@ -31,7 +31,8 @@ struct ReplayedRun {
   ReplayedRun(const World& world, const std::vector<TraceRow>& trace, bool lift) {
     const TestFolder folder;
     std::string table = lift ? LiftHeader(world.scene()) : RolloutHeader(world.scene());
-    for (const TraceRow& row : trace) table += lift ? LiftRow(row.state) : RolloutRow(row.state);
+    for (const TraceRow& row : trace)
+      table += lift ? LiftRow(world.scene(), row.state) : RolloutRow(row.state);
     WriteText(folder.path() / "table.csv", table);
     WriteScene(folder.path(), world.scene(), world.config().dt);
     scene = LoadScene(folder.path() / "scene.json");

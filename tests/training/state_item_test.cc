@@ -86,7 +86,7 @@ TEST(SearchLabelsTest, WhatIsLiftedIsAGraspWithThoseContactsAndNothingIsWithoutP
       if (!truth.contacts[f]) continue;
       const PlanningContact& contact = *truth.contacts[f];
       EXPECT_NEAR(scene.grasp_world.object().Calc(contact.p_OC), 0.0, 1e-6);
-      const double radius = FingertipRadius(static_cast<Finger>(f));
+      const double radius = TipSpheres{}.radii[f];
       const bool fits = CanTouch(contact.p_OC, contact.nhat_O, radius, {},
                                  scene.grasp_world.object(), scene.grasp_world.environment(), X_WB);
       EXPECT_TRUE(fits || !truth.lifted);
