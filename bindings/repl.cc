@@ -229,14 +229,15 @@ void RunRepl(const std::optional<std::filesystem::path>& scene, const ScriptConf
     try {
       if (scene) repl.OpenScene(*scene);
       repl.ReadAll();
+      repl.Finish(std::nullopt);
     } catch (const Interrupted&) {
+      ClearInterrupt();
       repl.Finish("interrupted");
       throw;
     } catch (const InputError& error) {
       repl.FinishFailed(error.what());
       throw;
     }
-    repl.Finish(std::nullopt);
   });
 }
 

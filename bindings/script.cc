@@ -246,14 +246,15 @@ void RunInMachine(const fs::path& file, const std::vector<std::string>& argument
   }
   try {
     machine.Call(count, 0);
+    script.FinishRecordings(std::nullopt);
   } catch (const Interrupted&) {
+    ClearInterrupt();
     script.FinishRecordings("interrupted");
     throw;
   } catch (const InputError& error) {
     script.FinishFailedRecordings(error.what());
     throw;
   }
-  script.FinishRecordings(std::nullopt);
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ namespace pregrasp {
   X(DrawElementsInstancedBaseInstance) \
   X(Enable)                            \
   X(EnableVertexAttribArray)           \
+  X(Finish)                            \
   X(FramebufferTexture)                \
   X(FramebufferTextureLayer)           \
   X(GenBuffers)                        \

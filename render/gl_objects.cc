@@ -1,6 +1,7 @@
 #include "render/gl_objects.h"
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 #include "render/shader_text.h"
 
 namespace pregrasp {
@@ -120,6 +121,7 @@ GlProgram::GlProgram(const std::vector<std::string>& vertex,
                      const std::vector<std::string>& fragment,
                      const std::vector<std::string>& defines)
     : program_(gl.CreateProgram()) {
+  ThrowIfInterrupted();
   const GLuint program = program_.get();
   std::vector<GLuint> shaders = {Compile(GL_VERTEX_SHADER, vertex, defines)};
   if (!fragment.empty()) shaders.push_back(Compile(GL_FRAGMENT_SHADER, fragment, defines));

@@ -10,6 +10,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 
 namespace pregrasp {
 namespace {
@@ -45,6 +46,7 @@ bool Encode(png_structp png, png_infop info, std::FILE* file, const Image& image
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
   for (int row = 0; row < image.height; ++row) {
+    if (InterruptRequested()) return false;
     png_write_row(png, &image.rgb[static_cast<std::size_t>(row) * image.width * 3]);
   }
   png_write_end(png, info);
@@ -99,6 +101,7 @@ void WritePng(const Image& image, const std::filesystem::path& path) {
     file.reset();
     std::error_code ignored;
     std::filesystem::remove(path, ignored);  // no half picture under a final name
+    if (error.text[0] == '\0') ThrowIfInterrupted();
     throw InputError(path.string(), "", "a file that can be written", why);
   }
 }

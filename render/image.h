@@ -12,7 +12,8 @@ struct Image {
   std::vector<std::uint8_t> rgb;
 };
 
-/// Deterministic bytes: no time stamp. @throws InputError if the file cannot be written or read.
+/// Deterministic bytes: no time stamp. @throws InputError if the file cannot be written or read;
+/// Interrupted, with no file left.
 void WritePng(const Image& image, const std::filesystem::path& file);
 Image ReadPng(const std::filesystem::path& file);
 

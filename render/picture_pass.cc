@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/core/interrupt.h"
 #include "render/gl_state.h"
 
 namespace pregrasp {
@@ -98,16 +99,20 @@ void PicturePass::Run(const FrameContent& content, const FrameData& data, Render
   SetBlend(false);
   background_.Use();
   DrawScreen(empty_);
+  ThrowIfInterrupted();  // the first time, each of these makes Mesa compile its shaders
   DrawSolids(content, lighting.solid);
+  ThrowIfInterrupted();
   SetBlend(true);  // the floor fades into the background
   if (ground) {
     lighting.ground.Use();
     DrawGround(empty_);
   }
+  ThrowIfInterrupted();
   DrawBevels(content, lighting.bevel);
   for (const Draw& draw : content.solids) {
     DrawPlainEdges(draw, draw.all_edges, Darker(draw.color, 0.15F, 0.75F));
   }
+  ThrowIfInterrupted();
   DrawHiddenArrows(content);
   DrawGhosts(content);
   DrawCones(content);

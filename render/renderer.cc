@@ -11,6 +11,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "render/camera.h"
 #include "render/font.h"
 #include "render/frame_content.h"
@@ -25,7 +26,9 @@
 namespace pregrasp {
 namespace {
 
-constexpr int kTile = 2048;               // pictures larger than this are drawn in tiles [pixels]
+// Larger pictures are drawn in tiles, so that memory stays bounded and an interrupt is soon seen.
+constexpr int kTileWidth = 2048;          // at most [pixels]
+constexpr int kTileArea = 1 << 19;        // about, at most [pixels]
 constexpr int kOcclusionSize = 1024;      // longest side of the occlusion buffer [pixels]
 constexpr double kLightRadius = 0.045;    // tan of the angular radius of the light
 constexpr double kOcclusionReach = 0.07;  // of the view's height
@@ -73,6 +76,18 @@ double GroundHeight(const RenderScene& scene, const FrameContent& content) {
   return z;
 }
 
+int TileWidth(const RenderConfig& config) { return std::min(config.width, kTileWidth); }
+int TileHeight(const RenderConfig& config) {
+  return std::min(config.height, kTileArea / TileWidth(config));
+}
+
+// What was asked of Mesa so far is drawn now: it would else come in one piece that cannot be
+// interrupted. @throws Interrupted.
+void FinishPass() {
+  gl.Finish();
+  ThrowIfInterrupted();
+}
+
 // Draws with a default for Mesa's rasteriser threads that suits many cores; the user's own
 // LP_NUM_THREADS wins. Pixels do not depend on it.
 void LimitRasterThreads() {
@@ -110,7 +125,7 @@ struct Renderer::Impl {
 
   void SizeTargets(const RenderConfig& config) {
     const int samples = config.quality == RenderQuality::kDraft ? 0 : 4;
-    const int w = std::min(config.width, kTile), h = std::min(config.height, kTile);
+    const int w = TileWidth(config), h = TileHeight(config);
     if (!tile || tile->width != w || tile->height != h || tile->samples != samples) {
       tile.reset();
       tile.emplace(w, h, samples);
@@ -211,6 +226,7 @@ Image Renderer::Render(const RenderScene& scene, const RenderConfig& config) {
   impl.context.MakeCurrent();
   impl.cache.DropDead();
   const FrameContent content = CollectContent(scene, view, impl.annotations, impl.cache);
+  ThrowIfInterrupted();
   impl.SizeTargets(config);
   Vector3 to_light = scene.to_light_W.value_or(DefaultLightDirection(view));
   if (!to_light.allFinite() || to_light.norm() < 1e-9) {
@@ -222,20 +238,24 @@ Image Renderer::Render(const RenderScene& scene, const RenderConfig& config) {
   impl.data.Upload(content, impl.cache);
   impl.data.SetBlock(frame);
   impl.shadow_pass.Run(content, fit, *impl.shadows);
+  FinishPass();
   if (config.quality == RenderQuality::kStill) {
     impl.occlusion_pass.Run(content, scene.ground, *impl.occlusion);
+    FinishPass();
   }
   Image image{config.width, config.height, {}};
   image.rgb.resize(static_cast<std::size_t>(config.width) * config.height * 3);
-  for (int y = 0; y < config.height; y += kTile) {
-    for (int x = 0; x < config.width; x += kTile) {
+  const int width = impl.tile->width, height = impl.tile->height;
+  for (int y = 0; y < config.height; y += height) {
+    for (int x = 0; x < config.width; x += width) {
       frame.picture[2] = static_cast<float>(x);
       frame.picture[3] = static_cast<float>(y);
       impl.data.SetBlock(frame);
       impl.picture_pass.Run(content, impl.data, config.quality, scene.ground, *impl.tile,
                             {x, y, config.width, config.height});
-      impl.ReadTile(x, y, std::min(kTile, config.width - x), std::min(kTile, config.height - y),
+      impl.ReadTile(x, y, std::min(width, config.width - x), std::min(height, config.height - y),
                     image);
+      ThrowIfInterrupted();
     }
   }
   const GLenum error = gl.GetError();  // of any call since the last picture

@@ -29,6 +29,7 @@ class Renderer {
   ~Renderer();
   Renderer(Renderer&&) noexcept;
 
+  /// @throws InputError for a size or a direction that it cannot draw; Interrupted, between passes.
   Image Render(const RenderScene& scene, const RenderConfig& config);
 
   /// GL_RENDERER and GL_VERSION, for `info` and the log.

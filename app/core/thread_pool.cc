@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 
 namespace pregrasp {
 
@@ -31,6 +32,7 @@ struct ThreadPool::Impl {
       lock.unlock();
       std::exception_ptr error;
       try {
+        ThrowIfInterrupted();
         (*body)(index, worker);
       } catch (...) {
         error = std::current_exception();

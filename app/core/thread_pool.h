@@ -25,7 +25,8 @@ class ThreadPool {
 
   /// Calls body(index, worker) for index in [0, count), worker in [0, num_threads()), and returns
   /// when all are done. The exception of the lowest failing index is rethrown, after all others
-  /// have ended. Not reentrant.
+  /// have ended. Where the user asked to stop, indices that are not begun yet throw Interrupted in
+  /// place of body. Not reentrant.
   void ParallelFor(int count, const std::function<void(int index, int worker)>& body);
 
  private:

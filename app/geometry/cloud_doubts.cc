@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "app/core/interrupt.h"
 #include "app/geometry/cloud_planes.h"
 #include "app/geometry/point_index.h"
 
@@ -59,6 +60,7 @@ void FindRim(const SampledCloud& cloud, CloudDoubts& doubts) {
   const PointIndex index(cloud.P, reach);
   std::vector<int> near;
   for (int i = 0; i < cloud.P.rows(); ++i) {
+    ThrowIfInterrupted();
     index.FindWithin(cloud.P.row(i), reach, near);
     const FittedPlane plane(cloud.P, near);
     const bool flat = std::all_of(near.begin(), near.end(), [&](int j) {
@@ -95,6 +97,7 @@ void FindSheet(const SampledCloud& cloud, CloudDoubts& doubts) {
   const auto count = static_cast<int>(cloud.P.rows());
   std::vector<int> near, sheet;
   for (int k = 0; k < kTried; ++k) {
+    ThrowIfInterrupted();
     const auto i = static_cast<int>(static_cast<std::int64_t>(k) * count / kTried);
     index.FindWithin(cloud.P.row(i), reach, near);
     if (near.size() < 4) continue;

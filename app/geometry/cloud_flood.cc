@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/core/interrupt.h"
 #include "app/geometry/point_index.h"
 
 namespace pregrasp {
@@ -67,6 +68,7 @@ CloudFlood::CloudFlood(const SampledCloud& cloud, double radius)
       marks_(grid_.values.size(), kOpen),
       radius_(radius) {
   for (int i = 0; i < cloud.P.rows(); ++i) {
+    ThrowIfInterrupted();
     VisitBall(grid_, cloud.P.row(i), radius,
               [&](int x, int y, int z) { marks_[grid_.Index(x, y, z)] = kNear; });
   }
@@ -102,6 +104,7 @@ std::vector<int> CloudFlood::Orient(const SampledCloud& cloud) const {
     return (front.row(found[0]).transpose() - p).norm();
   };
   for (int i = 0; i < cloud.P.rows(); ++i) {
+    ThrowIfInterrupted();
     const Vector3 p = cloud.P.row(i), step = 0.5 * radius_ * cloud.N.row(i);
     const double ahead = distance_to_flood(p + step), behind = distance_to_flood(p - step);
     constexpr double kAlike = 0.2;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/core/interrupt.h"
 #include "app/geometry/point_index.h"
 
 namespace pregrasp {
@@ -67,6 +68,7 @@ double FindNearness(const SampledCloud& cloud) {
   for (; near < 0.4 * cloud.spacing; near *= 2.0) {
     std::vector<double> shares;
     for (int i = 0; i < n; i += step) {
+      ThrowIfInterrupted();
       const Neighbourhood around(cloud, i);
       const VectorX far = around.Support(around.FindNormal(near), near).tail(kCloudNeighbours / 2);
       shares.push_back(far.sum() / around.weight.tail(kCloudNeighbours / 2).sum());
@@ -101,6 +103,7 @@ void FindNeighbourhoods(SampledCloud& cloud) {
   std::vector<double> nearest, sixth;
   cloud.near.resize(n);
   for (int i = 0; i < n; ++i) {
+    ThrowIfInterrupted();
     const Vector3 p = cloud.P.row(i);
     index.FindNearest(p, kCloudNeighbours + 1, found);
     found.erase(std::find(found.begin(), found.end(), i));
@@ -117,6 +120,7 @@ void FindNeighbourhoods(SampledCloud& cloud) {
 void FitPlanes(SampledCloud& cloud) {
   cloud.N.resize(cloud.P.rows(), 3);
   for (int i = 0; i < cloud.P.rows(); ++i) {
+    ThrowIfInterrupted();
     cloud.N.row(i) = Neighbourhood(cloud, i).FindNormal(cloud.near_plane).transpose();
   }
 }

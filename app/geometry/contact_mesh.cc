@@ -9,6 +9,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/geometry/hull.h"
 #include "app/geometry/iso_surface.h"
 #include "app/geometry/mass_properties.h"
@@ -43,6 +44,7 @@ class ConvexRebuild {
     mesh_ = CalcConvexHull(FindCorners(V));
     const MatrixX3 corners = mesh_.V;
     for (int v = 0; v < V.rows(); ++v) {
+      ThrowIfInterrupted();
       const bool used = (corners.rowwise() - V.row(v)).rowwise().squaredNorm().minCoeff() == 0.0;
       if (!used) Insert(V.row(v));
     }
@@ -56,6 +58,7 @@ class ConvexRebuild {
   MatrixX3 FindCorners(const MatrixX3& V) const {
     MatrixX3 corners = CalcReducedHull(V, tolerance_, static_cast<int>(V.rows())).V;
     for (int v = 0; v < corners.rows() && corners.rows() > 4;) {
+      ThrowIfInterrupted();
       MatrixX3 others(corners.rows() - 1, 3);
       others << corners.topRows(v), corners.bottomRows(corners.rows() - 1 - v);
       if (CalcHeightAbove(others, corners.row(v)) > tolerance_) {
@@ -182,6 +185,7 @@ TriangleMesh ExtractUnion(const Shape& shape, std::vector<FacePlane>* planes) {
   ScalarGrid grid = MakeGrid(distance.bounds(), kUnionNodes, 2);
   for (int z = 0; z < grid.count[2]; ++z) {
     for (int y = 0; y < grid.count[1]; ++y) {
+      ThrowIfInterrupted();
       for (int x = 0; x < grid.count[0]; ++x) {
         grid.values[grid.Index(x, y, z)] = static_cast<float>(distance.Calc(grid.Node(x, y, z)));
       }
@@ -190,6 +194,7 @@ TriangleMesh ExtractUnion(const Shape& shape, std::vector<FacePlane>* planes) {
   TriangleMesh mesh = ExtractSurface(grid);
   planes->clear();
   for (int f = 0; f < mesh.F.rows(); ++f) {
+    ThrowIfInterrupted();
     const Vector3 middle =
         (mesh.V.row(mesh.F(f, 0)) + mesh.V.row(mesh.F(f, 1)) + mesh.V.row(mesh.F(f, 2))) / 3.0;
     FacePlane plane;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/core/sha256.h"
 #include "app/core/text.h"
 #include "app/geometry/cut_finder.h"
@@ -97,6 +98,7 @@ class Decomposer {
     Halves best;
     std::vector<Plane> tried;
     for (const Cut& cut : cuts_.Find(piece.parts)) {
+      ThrowIfInterrupted();
       const bool similar = std::any_of(tried.begin(), tried.end(), [&](const Plane& other) {
         const double along = other.nhat.dot(cut.plane.nhat);
         const double apart = other.offset - std::copysign(1.0, along) * cut.plane.offset;

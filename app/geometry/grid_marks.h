@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "app/core/interrupt.h"
 #include "app/geometry/iso_surface.h"
 
 namespace pregrasp {
@@ -37,6 +38,7 @@ void VisitBall(const ScalarGrid& grid, const Vector3& p, double radius, Visit&& 
 template <typename Visit>
 void VisitInner(const ScalarGrid& grid, Visit&& visit) {
   for (int z = 1; z + 1 < grid.count[2]; ++z) {
+    ThrowIfInterrupted();
     for (int y = 1; y + 1 < grid.count[1]; ++y) {
       for (int x = 1; x + 1 < grid.count[0]; ++x) visit(x, y, z);
     }

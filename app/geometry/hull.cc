@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/geometry/mesh_topology.h"
 
 namespace pregrasp {
@@ -173,6 +174,7 @@ TriangleMesh CalcReducedHull(const MatrixX3& points, double tolerance, int max_v
   std::vector<int> outside(points.rows());
   std::iota(outside.begin(), outside.end(), 0);
   for (;;) {
+    ThrowIfInterrupted();
     MatrixX3 subset(static_cast<int>(chosen.size()), 3);
     for (std::size_t i = 0; i < chosen.size(); ++i) subset.row(i) = points.row(chosen[i]);
     TriangleMesh hull = CalcConvexHull(subset);

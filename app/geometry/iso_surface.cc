@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "app/core/interrupt.h"
+
 namespace pregrasp {
 namespace {
 
@@ -20,6 +22,7 @@ class Extractor {
 
   TriangleMesh Run() {
     for (int z = 0; z + 1 < grid_.count[2]; ++z) {
+      ThrowIfInterrupted();
       for (int y = 0; y + 1 < grid_.count[1]; ++y) {
         for (int x = 0; x + 1 < grid_.count[0]; ++x) AddCube(x, y, z);
       }

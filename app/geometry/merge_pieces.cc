@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "app/core/interrupt.h"
+
 namespace pregrasp {
 namespace {
 
@@ -35,6 +37,7 @@ class Joiner {
   // The joint that reaches least outside, with its piece; null when none is left.
   const Joint* FindBest() {
     while (!joints_.empty()) {
+      ThrowIfInterrupted();
       const auto best = std::min_element(joints_.begin(), joints_.end());
       if (best->piece) return &*best;
       const std::vector<const Piece*> members{&pieces_[best->i], &pieces_[best->j]};

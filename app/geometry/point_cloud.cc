@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 #include "app/geometry/signed_distance.h"
 #include "app/geometry/tessellate.h"
 #include "app/scene/shape_visit.h"
@@ -47,6 +48,7 @@ class Candidates {
 
   void Draw(int count, Rng& rng) {
     for (int i = 0; i < count; ++i) {
+      ThrowIfInterrupted();
       const double at = (i + rng.Uniform()) / count * sums_.back();
       const auto it = std::lower_bound(sums_.begin(), sums_.end() - 1, at);
       const auto [l, f] = faces_[it - sums_.begin()];
@@ -90,6 +92,7 @@ std::vector<int> ThinByFarthest(const std::vector<Vector3>& points, int count) {
   chosen.reserve(count);
   int next = 0;
   while (static_cast<int>(chosen.size()) < count) {
+    ThrowIfInterrupted();
     chosen.push_back(next);
     const double cx = x[next], cy = y[next], cz = z[next];
     for (int i = 0; i < n; ++i) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 #include "app/geometry/cloud_doubts.h"
 #include "app/geometry/cloud_flood.h"
 #include "app/geometry/cloud_planes.h"
@@ -124,6 +125,7 @@ ScalarGrid Evaluate(const SampledCloud& cloud, const CloudFlood& flood, double d
   const auto visit_all = [&](auto&& visit) {
     for (int z = 0; z < grid.count[2]; ++z) {
       for (int y = 0; y < grid.count[1]; ++y) {
+        ThrowIfInterrupted();
         for (int x = 0; x < grid.count[0]; ++x) visit(grid.Index(x, y, z), grid.Node(x, y, z));
       }
     }
@@ -310,7 +312,10 @@ Reconstruction ReconstructSurface(const MatrixX3& points, const MatrixX3& normal
   const MeshDistance to_mesh(result.mesh);
   std::vector<double> errors;
   errors.reserve(chosen.size());
-  for (const int i : chosen) errors.push_back(std::abs(to_mesh.Calc(points.row(i))));
+  for (const int i : chosen) {
+    ThrowIfInterrupted();
+    errors.push_back(std::abs(to_mesh.Calc(points.row(i))));
+  }
   result.mean_error =
       std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   result.p99_error = Percentile(errors, 0.99);

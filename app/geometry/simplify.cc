@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 #include "app/geometry/mesh_topology.h"
 
 namespace pregrasp {
@@ -99,6 +100,7 @@ class Collapser {
       before = num_faces_;
       PushAll();
       while (num_faces_ > target && !queue_.empty()) {
+        ThrowIfInterrupted();
         const auto [cost, a, b, stamp] = queue_.top();
         queue_.pop();
         if (stamp_[a] + stamp_[b] != stamp || Gone(a) || Gone(b)) continue;
@@ -301,6 +303,7 @@ TriangleMesh SplitLongEdges(const TriangleMesh& mesh, double max_edge) {
   }
   for (const auto& [edge, pair] : faces_at) push(edge.first, edge.second);
   while (!queue.empty()) {
+    ThrowIfInterrupted();
     const auto [length, minus_a, minus_b] = queue.top();
     queue.pop();
     const int a = -minus_a, b = -minus_b;

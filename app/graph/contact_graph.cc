@@ -9,6 +9,7 @@
 #include "app/core/check.h"
 #include "app/core/error.h"
 #include "app/core/finite.h"
+#include "app/core/interrupt.h"
 
 namespace pregrasp {
 namespace {
@@ -31,6 +32,7 @@ std::vector<TriangleSamples> SampleTriangles(Finger finger, const TriangleMesh& 
     return ContactOnTriangle(mesh, t, BarycentricFromSquare(u, v), shape);
   };
   for (int t = 0; t < static_cast<int>(all.size()); ++t) {
+    ThrowIfInterrupted();
     Rng rng(seed, RngStream::kGraphSamples, static_cast<int>(finger), t);
     for (int s = 0; s < samples; ++s) {
       const Placement::Contact contact = draw(t, rng);
@@ -79,6 +81,7 @@ class NodeSampler {
     const auto& triangles = samples_[static_cast<int>(finger)];
     std::vector<double> means;
     for (const TriangleSamples& triangle : triangles) {
+      ThrowIfInterrupted();
       std::vector<Placement> placements;
       for (const auto& contact : triangle.contacts) {
         placements.push_back(PlaceOne(finger, contact));
@@ -192,6 +195,7 @@ void ContactGraph::Score(const SignedDistance& shape, const PlacementScorer& con
   const auto index_c = sampler.ScoreAlone(Finger::kIndex, context);
   const auto index_n = sampler.ScoreAlone(Finger::kIndex, free);
   for (int thumb = 0; thumb < num_triangles(); ++thumb) {
+    ThrowIfInterrupted();
     const auto both_c = sampler.ScoreBoth(thumb, context);
     const auto both_n = sampler.ScoreBoth(thumb, free);
     for (int index = 0; index < num_triangles(); ++index) {

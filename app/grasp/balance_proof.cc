@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 #include "app/grasp/contact_wrenches.h"
 
 namespace pregrasp {
@@ -63,6 +64,7 @@ struct UnitWrenches {
 MinNormPoint FindNearest(const UnitWrenches& wrenches, const Vector6& weight,
                          const MinNormConfig& solver) {
   const auto support = [&](const Vector6& direction, int, Vector6& point) {
+    ThrowIfInterrupted();
     point = weight;
     wrenches.FindFarthest(direction, direction.dot(weight), point);
   };
@@ -130,6 +132,7 @@ ProofLimit FindProofLimit(std::span<const WrenchContact> contacts, const Vector3
   ProofLimit limit;
   // For cones that hold the pyramids of CalcProofSlack, so that it agrees.
   const auto holds = [&](double mu) {
+    ThrowIfInterrupted();
     const BalanceProof proof =
         FindBalanceProof(contacts, mu / std::cos(kPi / kPyramidEdges), gravity, torque_scale);
     if (!(proof.impossible && proof.covered >= spacing)) return false;

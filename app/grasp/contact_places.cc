@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/core/interrupt.h"
 #include "app/grasp/edge_contacts.h"
 
 namespace pregrasp {
@@ -63,6 +64,7 @@ ContactPlaces::Pool ContactPlaces::MakePool(Finger finger, const std::vector<Edg
   };
   const SurfacePoints& surface = world_.surface();
   for (int i = 0; i < surface.P.rows(); ++i) {
+    ThrowIfInterrupted();
     const Vector3 p = surface.P.row(i);
     const Vector3 nhat = surface.N.row(i);
     if (!CanTouch(p, nhat, radius, slack_, world_.object(), world_.environment(), X_WB_)) continue;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 
 namespace pregrasp {
 namespace {
@@ -43,6 +44,7 @@ GraspRoom::GraspRoom(const GraspWorld& world, const GraspRoomConfig& config, std
   weightless.mass = 0.0;
   int drawn = 0;
   while (drawn < config.max_drawn && num_sets() < config.sets) {
+    ThrowIfInterrupted();
     Rng rng(seed_, RngStream::kGraspRoom, drawn++);
     auto contacts = sampler_.Sample({}, rng);
     if (!contacts) continue;

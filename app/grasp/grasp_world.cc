@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 
 namespace pregrasp {
 namespace {
@@ -33,6 +34,7 @@ TipReach MeasureTipReach(const HandModel& hand) {
   Rng rng(0, RngStream::kTipReach);
   HandPose pose;
   for (int sample = 0; sample < kReachPostures; ++sample) {
+    ThrowIfInterrupted();
     HandJoints q = HandJoints::Zero();
     for (int j = 0; j < hand.num_joints; ++j) q[j] = rng.Uniform(hand.q_lower[j], hand.q_upper[j]);
     CalcHandPose(hand, RigidTransform::Identity(), q, &pose);

@@ -7,6 +7,7 @@
 #include "app/core/check.h"
 #include "app/core/ease.h"
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/core/text.h"
 #include "app/dynamics/tip_overlap.h"
 
@@ -148,6 +149,7 @@ class Lifter {
   }
 
   void Step() {
+    ThrowIfInterrupted();
     contacts_.clear();
     before_ = state_;
     const Convergence convergence = stepper_ == Stepper::kKernel

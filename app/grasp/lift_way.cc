@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/core/text.h"
 
 namespace pregrasp {
@@ -101,6 +102,7 @@ LiftWay FindLiftWay(const std::vector<RigidTransform>& X_WB, const PointCloud& c
     const double a = DegToRad(tilt);
     const int azimuths = std::max(1, static_cast<int>(std::ceil(360.0 * std::sin(a))));
     for (int i = 0; i < azimuths; ++i) {
+      ThrowIfInterrupted();
       const double b = 2.0 * kPi * i / azimuths;
       way.direction_W =
           R_WUp * Vector3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));

@@ -7,6 +7,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/grasp/edge_contacts.h"
 
 namespace pregrasp {
@@ -67,6 +68,7 @@ std::vector<GraspContact> FindReachableContacts(const GraspWorld& world, const I
   const SurfacePoints& surface = world.surface();
   std::vector<GraspContact> contacts;
   for (int i = 0; i < surface.P.rows(); ++i) {
+    ThrowIfInterrupted();
     const Vector3 p = surface.P.row(i);
     const Vector3 nhat = surface.N.row(i);
     if (CanTouch(p, nhat, radius, slack, world.object(), world.environment(), X_WB)) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/core/text.h"
 #include "app/geometry/tessellate.h"
 
@@ -109,6 +110,7 @@ SurfacePoints MakeSurfacePoints(const Shape& shape, const SignedDistance& distan
   points.N.resize(static_cast<int>(middles.size()), 3);
   int count = 0;
   for (const Vector3& middle : middles) {
+    ThrowIfInterrupted();
     const FacePoint face = distance.ProjectToFace(middle);
     const bool moved_to_another_face = (face.p_B - middle).norm() > points.spacing;
     if (moved_to_another_face) continue;

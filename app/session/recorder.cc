@@ -1,8 +1,10 @@
 #include "app/session/recorder.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "app/core/check.h"
+#include "app/core/interrupt.h"
 #include "app/job/planner_settings.h"
 #include "app/job/run_policy.h"
 #include "app/pictures/overlay.h"
@@ -54,24 +56,29 @@ void Recorder::Draw(const Timeline::Node& node, const Shot& shot) {
 }
 
 void Recorder::DrawPending() {
-  if (pending_ == nullptr) return;
-  const Timeline::Node& node = *std::exchange(pending_, nullptr);
-  const bool wanted = pictures_ == PictureMode::kAll ||
-                      (pictures_ == PictureMode::kKey && IsKeyStep(node.facts, timeline_));
-  if (wanted) Draw(node, Shot{});
+  for (; !pending_.empty(); pending_.pop_front()) {
+    const Timeline::Node& node = *pending_.front();
+    const bool wanted = pictures_ == PictureMode::kAll ||
+                        (pictures_ == PictureMode::kKey && IsKeyStep(node.facts, timeline_));
+    if (wanted) Draw(node, Shot{});
+  }
 }
 
 void Recorder::Add(const Timeline::Node& node) {
-  DrawPending();
+  try {
+    DrawPending();
+  } catch (const Interrupted&) {
+    // Whoever works on polls too, and must find the node written.
+  }
   const int number = run_.AddStep(node.facts);
   PREGRASP_CHECK(number == node.number, number, node.number);
-  pending_ = &node;
+  pending_.push_back(&node);
 }
 
 void Recorder::Shoot(const Timeline::Node& node, const Shot& shot) {
   if (pictures_ == PictureMode::kNone) return;
-  if (pending_ == &node) pending_ = nullptr;
   Draw(node, shot);
+  pending_.erase(std::remove(pending_.begin(), pending_.end(), &node), pending_.end());
 }
 
 void Recorder::WriteTables(const Timeline::Node& node) {
@@ -102,7 +109,7 @@ void Recorder::WriteTables(const Timeline::Node& node) {
 }
 
 void Recorder::Finish(const Timeline::Node& node, RunSummary summary) {
-  PREGRASP_CHECK(pending_ == nullptr);
+  PREGRASP_CHECK(pending_.empty());
   WriteTables(node);
   for (const auto& [number, shot] : drawn_) {
     run_.AddPicture(timeline_.nodes()[static_cast<std::size_t>(number) - 1]->facts, number, shot);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -19,13 +20,17 @@ class Recorder {
            PictureDrawer& drawer, RunInfo info);
 
   /// Writes the next node. Its own picture waits until the next one comes: another may be asked
-  /// for.
+  /// for. An interrupt leaves pictures for DrawPending: every node gets written.
   void Add(const Timeline::Node& node);
-  /// A picture of a node that was added; of several of one node the last stays.
+  /// A picture of a node that was added; of several of one node the last stays. @throws
+  /// Interrupted, without it.
   void Shoot(const Timeline::Node& node, const Shot& shot);
 
   /// Draws what waits; to be called before Finish, so that the summary's seconds count it.
+  /// @throws Interrupted, after which the rest still waits.
   void DrawPending();
+  /// Does without the pictures that wait.
+  void DropPending() { pending_.clear(); }
   /// Writes what the job has come to at `node`, and puts the run in its place.
   void Finish(const Timeline::Node& node, RunSummary summary);
 
@@ -40,7 +45,7 @@ class Recorder {
   const Timeline& timeline_;
   PictureMode pictures_;
   PictureDrawer& drawer_;
-  const Timeline::Node* pending_ = nullptr;      // the latest, if its picture is not drawn
+  std::deque<const Timeline::Node*> pending_;    // whose own pictures are not drawn yet
   std::map<int, nlohmann::ordered_json> drawn_;  // pictures, by the step's number
   double picture_seconds_ = 0.0;
 };

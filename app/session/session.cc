@@ -2,6 +2,7 @@
 
 #include "app/core/data_folder.h"
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/core/peak_memory.h"
 #include "app/core/sha256.h"
 #include "app/job/planner_settings.h"
@@ -86,6 +87,7 @@ std::unique_ptr<Recorder> Session::OpenRecorder(const std::filesystem::path& dir
   auto recorder =
       std::make_unique<Recorder>(directory, *timeline_, pictures, *drawer_, std::move(info));
   for (const auto& node : timeline_->nodes()) {
+    ThrowIfInterrupted();
     recorder->Add(*node);
     const auto shot = shots_.find(node->number);
     if (shot != shots_.end()) recorder->Shoot(*node, shot->second);
@@ -154,6 +156,12 @@ void Session::FinishRecording(const std::optional<std::string>& status, const No
                               const std::string& error) {
   if (!recorder_) return;
   if (!status) CompleteVerdict();
+  try {
+    recorder_->DrawPending();
+  } catch (const Interrupted&) {
+    if (!status) throw;  // the recording goes on
+    recorder_->DropPending();
+  }
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
   recorder->SetError(error);
   Finish(*recorder, status, node);

@@ -66,7 +66,8 @@ class Session {
   std::filesystem::path Save(const std::optional<std::filesystem::path>& directory,
                              const Node* node = nullptr);
 
-  /// Ends the run directory that is recorded to, if there is one.
+  /// Ends the run directory that is recorded to, if there is one. @throws Interrupted without a
+  /// status, and goes on recording; with one it does without pictures that were not drawn.
   /// @param status  of the summary in place of its own: "interrupted", "failed".
   /// @param error   what it failed for, for the manifest.
   void FinishRecording(const std::optional<std::string>& status = std::nullopt,

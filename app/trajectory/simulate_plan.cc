@@ -6,6 +6,7 @@
 
 #include "app/core/check.h"
 #include "app/core/finite.h"
+#include "app/core/interrupt.h"
 #include "app/dynamics/tip_overlap.h"
 
 namespace pregrasp {
@@ -127,6 +128,7 @@ class PlanRunner {
   }
 
   void Step() {
+    ThrowIfInterrupted();
     contacts_.clear();
     if (stepper_ == Stepper::kKernel) {
       AddConvergence(world_.Step(state_, trace_ ? &contacts_ : nullptr));
@@ -319,7 +321,10 @@ Released SimulateRelease(const World& world, WorldState state) {
   for (int f = 0; f < kNumFingers; ++f) world.LiftFinger(state, static_cast<Finger>(f));
   const RigidTransform X_WO = state.bodies.front().X_WB();
   const int steps = static_cast<int>(std::lround(kSeconds / world.config().dt));
-  for (int i = 0; i < steps; ++i) world.Step(state);
+  for (int i = 0; i < steps; ++i) {
+    ThrowIfInterrupted();
+    world.Step(state);
+  }
   const RigidTransform X_WO_end = state.bodies.front().X_WB();
   Released release;
   release.shift = (X_WO_end.translation() - X_WO.translation()).norm();

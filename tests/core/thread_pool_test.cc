@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "app/core/interrupt.h"
+
 namespace pregrasp {
 namespace {
 
@@ -37,6 +39,23 @@ TEST(ThreadPoolTest, RethrowsTheLowestFailingIndexAndStaysUsable) {
     } catch (const std::runtime_error& error) {
       EXPECT_STREQ(error.what(), "5");
     }
+  }
+}
+
+TEST(ThreadPoolTest, AnInterruptEndsALoopWithWhatHasBegun) {
+  for (const int threads : {1, 3}) {
+    ThreadPool pool(threads);
+    std::atomic<int> done = 0;
+    const auto body = [&](int, int) {
+      if (++done == 10) RequestInterrupt();
+    };
+    EXPECT_THROW(pool.ParallelFor(1000, body), Interrupted);
+    ClearInterrupt();
+    EXPECT_GE(done, 10);
+    EXPECT_LT(done, 10 + threads);
+    done = 0;
+    pool.ParallelFor(5, [&](int, int) { ++done; });
+    EXPECT_EQ(done, 5);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/core/rng.h"
 
 namespace pregrasp {
@@ -52,6 +53,13 @@ TEST(PngTest, TheSameImageGivesTheSameBytes) {
 TEST(PngTest, AFileThatCannotBeWrittenOrReadIsAnInputError) {
   EXPECT_THROW(WritePng(RandomImage(2, 2), "/nonexistent/folder/a.png"), InputError);
   EXPECT_THROW(ReadPng("/nonexistent/folder/a.png"), InputError);
+}
+
+TEST(PngTest, AnInterruptLeavesNoFile) {
+  RequestInterrupt();
+  EXPECT_THROW(WritePng(RandomImage(32, 32), TestFile("interrupted.png")), Interrupted);
+  ClearInterrupt();
+  EXPECT_FALSE(std::filesystem::exists(TestFile("interrupted.png")));
 }
 
 TEST(PngTest, DamagedFilesAreInputErrors) {

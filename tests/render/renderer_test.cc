@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <thread>
 
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/core/rng.h"
 #include "render/camera.h"
 #include "render/palette.h"
@@ -360,6 +362,28 @@ TEST(RendererTest, TilesJoinWithoutASeam) {
   const Image image = SharedRenderer().Render(scene, {2200, 64, RenderQuality::kStill});
   for (int y = 8; y < 56; ++y) {
     EXPECT_LE(std::abs(Brightness(image, {2047, y}) - Brightness(image, {2048, y})), 3) << y;
+  }
+  const Image high = SharedRenderer().Render(scene, {2048, 300, RenderQuality::kStill});
+  for (int x = 8; x < 2040; x += 8) {  // tiles of 256 rows, the lowest first
+    EXPECT_LE(std::abs(Brightness(high, {x, 43}) - Brightness(high, {x, 44})), 3) << x;
+  }
+}
+
+TEST(RendererTest, AnInterruptedPictureLeavesTheNextOneAsItIs) {
+  const RenderConfig config{640, 360, RenderQuality::kStill};
+  const Image before = SharedRenderer().Render(RulerScene(), config);
+  for (const int microseconds : {0, 5000, 20000, 60000}) {
+    std::thread interrupter([&] {
+      std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
+      RequestInterrupt();
+    });
+    try {
+      for (;;) SharedRenderer().Render(RulerScene(), config);
+    } catch (const Interrupted&) {
+    }
+    interrupter.join();
+    ClearInterrupt();
+    EXPECT_EQ(SharedRenderer().Render(RulerScene(), config).rgb, before.rgb) << microseconds;
   }
 }
 

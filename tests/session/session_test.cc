@@ -211,6 +211,34 @@ TEST_F(SessionTest, AnInterruptedActionIsAStepAndTheRunIsValid) {
   EXPECT_TRUE(std::get<SimulationFacts>(run.steps[2].details).stopped);
 }
 
+TEST_F(SessionTest, AnInterruptWhileItIsSavedKeepsTheRecording) {
+  Session session(MakeRulerScene(), {});
+  session.Record(folder_ / "run", PictureMode::kAll);
+  Wait(session, 0.1);
+  RequestInterrupt();
+  EXPECT_THROW(session.Save(std::nullopt), Interrupted);
+  EXPECT_TRUE(session.recording());
+  EXPECT_FALSE(fs::exists(folder_ / "run"));
+  session.FinishRecording("interrupted");  // without the picture that was not drawn
+  ClearInterrupt();
+  const LoadedRun run = LoadRun(folder_ / "run");
+  EXPECT_EQ(run.summary.status, "interrupted");
+  ASSERT_EQ(run.steps.size(), 2U);
+}
+
+TEST_F(SessionTest, PicturesThatAnInterruptLeftOutAreDrawnWhenItGoesOn) {
+  Session session(MakeRulerScene(), {});
+  session.Record(folder_ / "run", PictureMode::kAll);
+  RequestInterrupt();
+  EXPECT_THROW(Wait(session, 0.2), Interrupted);  // the start's picture waits for this step
+  ClearInterrupt();
+  Wait(session, 0.1);
+  session.FinishRecording();
+  EXPECT_EQ(LoadRun(folder_ / "run").steps.size(), 3U);
+  const fs::directory_iterator frames(folder_ / "run/frames");
+  EXPECT_EQ(std::distance(begin(frames), end(frames)), 3);
+}
+
 TEST_F(SessionTest, RefusesOverlapsSettlingLateAndTwoRecordings) {
   Scene overlapping = MakeRulerScene();
   overlapping.object().X_WB.translation().z() = 0.0;
