@@ -90,6 +90,24 @@ Pushed GraspWhy(lua_State* L, LuaGrasp& grasp) {
   return PushExplanation(L, ExplainGrasp(*facts.grasp, facts.lift));
 }
 
+// Without another: the one that best() gives of the same trajectory.
+Pushed GraspWhyNot(lua_State* L, LuaGrasp& grasp,
+                   const std::optional<std::shared_ptr<LuaGrasp>>& other) {
+  if (other) return PushExplanation(L, ExplainGraspAgainst(FactsOf(grasp), FactsOf(**other)));
+  const std::vector<int> order = OrderGrasps(*grasp.all.state());
+  if (order.empty()) {
+    throw InputError("", "other", "a grasp, as none is feasible", "nothing");
+  }
+  LuaGrasp best{grasp.all, nullptr, nullptr};
+  for (const Timeline::Node* node : PathTo(*grasp.all.node)) {
+    const auto* tested = std::get_if<GraspFacts>(&node->facts.details);
+    const auto* lift = std::get_if<LiftFacts>(&node->facts.details);
+    if (tested != nullptr && tested->entry == order.front()) best.step = node;
+    if (lift != nullptr && lift->grasp == order.front()) best.lift = node;
+  }
+  return PushExplanation(L, ExplainGraspAgainst(FactsOf(grasp), FactsOf(best)));
+}
+
 void GraspShot(lua_State* L, LuaGrasp& grasp, const ShotOptions& options) {
   TakeShot(L, *grasp.all.session, *grasp.step, options);
 }
@@ -225,6 +243,7 @@ const ClassInfo& GraspClass() {
                               {
                                   Method<&GraspMotion>("motion", "options"),
                                   Query<&GraspWhy>("why"),
+                                  Query<&GraspWhyNot>("why_not", "other"),
                                   Method<&GraspShot>("shot", "options"),
                               },
                               {

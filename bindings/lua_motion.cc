@@ -141,6 +141,15 @@ Pushed MotionWhy(lua_State* L, LuaMotion& motion) {
   return PushExplanation(L, ExplainFrame(*keyframe, motion.state()->config.motion));
 }
 
+Pushed MotionWhyNot(lua_State* L, LuaMotion& motion, LuaMotion& other) {
+  const auto* facts = std::get_if<MotionFacts>(&motion.node->facts.details);
+  const auto* against = std::get_if<MotionFacts>(&other.node->facts.details);
+  if (facts == nullptr || against == nullptr) {
+    throw InputError("", "", "two motions that are finished", "one that is not");
+  }
+  return PushExplanation(L, ExplainMotionAgainst(*facts, *against));
+}
+
 void MotionShot(lua_State* L, LuaMotion& motion, const ShotOptions& options) {
   TakeShot(L, *motion.session, *motion.node, options);
 }
@@ -196,6 +205,12 @@ Pushed FrameWhy(lua_State* L, LuaFrame& frame) {
   return PushExplanation(
       L,
       ExplainFrame(frame.facts(), frame.session->timeline().GetState(*frame.node)->config.motion));
+}
+
+Pushed FrameWhyNot(lua_State* L, LuaFrame& frame, LuaFrame& other) {
+  return PushExplanation(
+      L, ExplainFrameAgainst(frame.facts(), other.facts(),
+                             frame.session->timeline().GetState(*frame.node)->config.motion));
 }
 
 void FrameShot(lua_State* L, LuaFrame& frame, const ShotOptions& options) {
@@ -280,6 +295,7 @@ const ClassInfo& MotionClass() {
                                   Method<&MotionBack>("back", "steps"),
                                   Method<&MotionForward>("forward", "steps"),
                                   Query<&MotionWhy>("why"),
+                                  Query<&MotionWhyNot>("why_not", "other"),
                                   Method<&MotionShot>("shot", "options"),
                               },
                               {
@@ -299,6 +315,7 @@ const ClassInfo& FrameClass() {
   static const ClassInfo info{"Frame",
                               {
                                   Query<&FrameWhy>("why"),
+                                  Query<&FrameWhyNot>("why_not", "other"),
                                   Method<&FrameShot>("shot", "options"),
                               },
                               {

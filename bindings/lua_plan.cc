@@ -153,6 +153,16 @@ Pushed PlanWhy(lua_State* L, LuaPlan& plan) {
   return PushExplanation(L, why);
 }
 
+// Why its result is not of another path.
+Pushed PlanWhyNot(lua_State* L, LuaPlan& plan, int path) {
+  if (!plan.place.result) {
+    throw InputError("", "", "a run that has ended", "one that has not");
+  }
+  RequireRank(path);
+  return PushExplanation(
+      L, ExplainPathAgainstEnd(plan.session->timeline(), *plan.place.result->end, path));
+}
+
 // Properties.
 
 int PlanSteps(LuaPlan& plan) { return plan.place.steps; }
@@ -206,6 +216,7 @@ const ClassInfo& PlanClass() {
                                   Method<&PlanForward>("forward", "steps"),
                                   Method<&PlanObject>("object"),
                                   Query<&PlanWhy>("why"),
+                                  Query<&PlanWhyNot>("why_not", "path"),
                                   Method<&PlanSave>("save", "dir"),
                               },
                               {

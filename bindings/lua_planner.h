@@ -238,6 +238,9 @@ std::string SessionSaveState(lua_State* L, const std::shared_ptr<Session>& sessi
 Pushed SessionWhy(lua_State* L, const std::shared_ptr<Session>& session);
 /// The finished grasps of the certificate that a node follows, as trajectory:grasps{} gives them.
 std::shared_ptr<LuaGrasps> FindGrasps(const std::shared_ptr<Session>& session,
+Pushed SessionWhyNot(lua_State* L, Session& session, int path);
+/// @throws InputError for what is no path's rank.
+void RequireRank(int path);
                                       const Timeline::Node& certified, nlohmann::json options);
 
 // The same in another scene (lua_what_if.cc).

@@ -319,6 +319,7 @@ const ClassInfo& SessionClass() {
                                   Method<&SessionGo>("go", "id"),
                                   Query<&SessionStep>("step", "id"),
                                   Query<&SessionWhy>("why"),
+                                  Query<&SessionWhyNot>("why_not", "path"),
                                   Query<&SessionCheck>("check"),
                                   Method<&SessionSaveState>("save_state", "dir, at"),
                               },

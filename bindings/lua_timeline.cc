@@ -284,6 +284,16 @@ Pushed SessionWhy(lua_State* L, const std::shared_ptr<Session>& session) {
   return PushExplanation(L, why);
 }
 
+Pushed SessionWhyNot(lua_State* L, Session& session, int path) {
+  RequireRank(path);
+  const Timeline& timeline = session.timeline();
+  return PushExplanation(L, ExplainPathAgainstEnd(timeline, FindFurthest(timeline), path));
+}
+
+void RequireRank(int path) {
+  if (path < 1) throw InputError("", "path", "the rank of a path, from 1", std::to_string(path));
+}
+
 const std::vector<FunctionInfo>& TimelineFunctions() {
   static const std::vector<FunctionInfo> functions = {Function<&ComparePlaces>("compare", "a, b"),
                                                       Function<&LoadState>("load_state", "dir")};

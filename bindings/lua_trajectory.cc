@@ -248,6 +248,13 @@ Pushed TrajectoryWhy(lua_State* L, LuaTrajectory& trajectory) {
                                                trajectory.state()->config.certify));
 }
 
+Pushed TrajectoryWhyNot(lua_State* L, LuaTrajectory& trajectory, LuaTrajectory& other) {
+  return PushExplanation(
+      L, ExplainCertificateAgainst(trajectory.session->scene(), trajectory.step_id(),
+                                   trajectory.facts(), other.step_id(), other.facts(),
+                                   trajectory.state()->config.certify));
+}
+
 void TrajectoryShot(lua_State* L, LuaTrajectory& trajectory, const ShotOptions& options) {
   TakeShot(L, *trajectory.session, *trajectory.node, options);
 }
@@ -415,6 +422,7 @@ const ClassInfo& TrajectoryClass() {
                               {
                                   Method<&TrajectoryGrasps>("grasps", "options"),
                                   Query<&TrajectoryWhy>("why"),
+                                  Query<&TrajectoryWhyNot>("why_not", "other"),
                                   Query<&TrajectoryBody>("body", "name"),
                                   Method<&TrajectoryShot>("shot", "options"),
                               },

@@ -60,6 +60,21 @@ Explanation ExplainFrame(const FrameFacts& frame, const MotionConfig& config);
 /// What a hand motion came to.
 Explanation ExplainMotionEnd(const MotionFacts& facts);
 
+// Why something is not another: `other` of each item is that one's number.
+
+/// A plan's certificate beside another's. @param id, other_id  their steps.
+Explanation ExplainCertificateAgainst(const Scene& scene, const std::string& id,
+                                      const CertifyFacts& facts, const std::string& other_id,
+                                      const CertifyFacts& other, const CertifyConfig& config);
+/// Why a grasp comes before or after another in OrderGrasps, or is feasible where it is not.
+Explanation ExplainGraspAgainst(const GraspWithLift& grasp, const GraspWithLift& other);
+/// What a frame gave up beside what another did.
+Explanation ExplainFrameAgainst(const FrameFacts& frame, const FrameFacts& other,
+                                const MotionConfig& config);
+Explanation ExplainMotionAgainst(const MotionFacts& motion, const MotionFacts& other);
+/// How far the path of a rank came in the timeline, beside that which `end` is of.
+Explanation ExplainPathAgainstEnd(const Timeline& timeline, const Timeline::Node& end, int rank);
+
 /// How two steps differ. @param left, right  the steps themselves, with the sources of their facts.
 Explanation ExplainDifference(const BranchComparison& comparison, const Scene& left_scene,
                               const Scene& right_scene, const StepFacts& left,

@@ -359,6 +359,11 @@ function Session:step(id) end
 ---@return Explanation
 function Session:why() end
 
+---Why the step that came furthest is not of another path: how far that one came, beside it.
+---@param path integer its rank
+---@return Explanation
+function Session:why_not(path) end
+
 ---The same scene with some values changed, as a session of its own at its start; this one is left as it is.
 ---@param options WhatIfOptions
 ---@return Session
@@ -419,6 +424,11 @@ function Plan:object() end
 ---Why it ended as it did, or where it is.
 ---@return Explanation
 function Plan:why() end
+
+---Why its result is not of another path: how far that one came, beside the end. Of a run that has ended.
+---@param path integer its rank
+---@return Explanation
+function Plan:why_not(path) end
 
 ---As Session:save, with the summary of the run's result.
 ---@param dir? string "out/.."
@@ -921,6 +931,12 @@ function Trajectory:shot(options) end
 
 ---@class PlanStage
 ---@field thumb PlanFinger
+---Why it is not another plan's: the numbers of both certificates. "better" is certified, then held in more changed worlds.
+---@param other Trajectory
+---@return Explanation
+function Trajectory:why_not(other) end
+
+
 ---@field index PlanFinger
 
 ---@class PlanFinger
@@ -999,6 +1015,11 @@ function Grasp:shot(options) end
 ---@field direction_W Vector3 of the way: nearest to up in which it can leave
 ---@field pushes integer of six pushes with half the weight at the top, those that it withstands
 ---@field soft boolean whether the lift holds with fingers of 150 N/m too
+---Why it is not another, of the same trajectory or not, its lift included: the first that differs of what best() goes by.
+---@param other? Grasp the one that best() gives
+---@return Explanation
+function Grasp:why_not(other) end
+
 ---@field stiff boolean and with 600 N/m
 ---@field forearm_free boolean whether the forearm, 20 cm behind the palm and 3 cm thick, is clear of all bodies at the grasp and at the end
 ---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
@@ -1058,6 +1079,11 @@ function Motion:shot(options) end
 ---@field max_wrist_speed number [m/s]
 ---@field forearm_free boolean whether the forearm, 20 cm behind the palm and 3 cm thick, is clear of all bodies in every frame
 ---@field over_limits integer frames at which the hand exceeds a limit of speed or acceleration
+---Why it is not another motion, both finished.
+---@param other Motion
+---@return Explanation
+function Motion:why_not(other) end
+
 
 ---@class Frame
 ---@field number integer from 1, in time; of a keyframe, before free parts are given their time
@@ -1095,6 +1121,11 @@ function Frame:shot(options) end
 ---@field contacts Contact[] of the last physics step
 ---@field trace StepTrace? of the last physics step; nil unless simulate{ trace = true }
 local Simulation = {}
+---Why it is not another: what each gave up, with the numbers of both.
+---@param other Frame
+---@return Explanation
+function Frame:why_not(other) end
+
 
 ---Puts a finger on the object, at the surface point nearest to p_OC, without force yet.
 ---@param options TouchOptions

@@ -246,7 +246,11 @@ TEST_F(TimeMachineTest, AWholeRunIsTakenStepByStepBackAndForth) {
     local whole = session():plan)" +
              options + R"( whole:run()
     print(whole.num_steps == plan.num_steps, whole.end_id == plan.end_id, pg.compare(plan, whole).verdict)
-    print(s:why().verdict == plan.status))"),
+    print(s:why().verdict == plan.status)
+    local path = tonumber(plan.end_id:match "%d+")
+    print(plan:why_not(path).verdict, plan:why_not(path).text == s:why_not(path).text)
+    local never = plan:why_not(9999) print(never.verdict, never.text:find("Path 9999 was not tried", 1, true) ~= nil)
+    print(never.items[1].value, never.items[#never.items].name, (pcall(plan.why_not, plan, 0))))"),
       "Plan(1 step)\topen\ttrue\tscene.verdict\ntrue\tgraph.score\t3\npath.1.mppi.1\ttrue\n"
       "true\npath.1.mppi.1\ntrue\tpath.1.mppi.2\ntrue\ttrue\tfalse\t1\ntrue\ttrue\tsame\ntrue\n");
 }
