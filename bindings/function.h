@@ -209,6 +209,13 @@ FunctionInfo Query(std::string name, std::string parameters = "") {
           internal::Thunk<kTarget, internal::CallKind::kQuery>};
 }
 
+/// What x[number] gives: quick, as a property.
+template <auto kTarget>
+FunctionInfo Item(std::string name, std::string parameters) {
+  return {std::move(name), std::move(parameters),
+          internal::Thunk<kTarget, internal::CallKind::kProperty>};
+}
+
 /// A value that can be read: the target takes the object only, and is quick.
 template <auto kTarget>
 FunctionInfo Property(std::string name) {

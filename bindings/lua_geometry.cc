@@ -6,6 +6,7 @@
 #include "app/geometry/point_cloud.h"
 #include "app/geometry/signed_distance.h"
 #include "app/job/planner_settings.h"
+#include "bindings/lua_array.h"
 #include "bindings/lua_session.h"
 
 namespace pregrasp {
@@ -23,12 +24,15 @@ constexpr int kMaxPoints = 4096;  // farthest-point sampling grows with the squa
 
 Pushed PushCloud(lua_State* L, Session& session, int points) {
   RequireWithin("", "points", {1, kMaxPoints, 1}, points);
-  const PointCloud cloud = SamplePointCloud(session.scene().object().shape, points,
-                                            Rng(session.config().seed, RngStream::kObjectCloud));
+  const std::shared_ptr<const PointCloud> cloud =
+      ShareArrayData(L,
+                     SamplePointCloud(session.scene().object().shape, points,
+                                      Rng(session.config().seed, RngStream::kObjectCloud)),
+                     6 * sizeof(double) * static_cast<std::size_t>(points));
   RecordWriter(L, kCloud)
-      .Set("count", static_cast<int>(cloud.P.rows()))
-      .Set("points", cloud.P)
-      .Set("normals", cloud.N);
+      .Set("count", static_cast<int>(cloud->P.rows()))
+      .Set("points", MakeRowArray("Vector3", cloud, cloud->P))
+      .Set("normals", MakeRowArray("Vector3", cloud, cloud->N));
   return {1};
 }
 
@@ -42,7 +46,10 @@ Pushed PushContactMesh(lua_State* L, Session& session, int triangles) {
   RequireWithin("", "triangles", FindPlannerSetting("mesh.triangles").range, triangles);
   ContactMeshConfig config;
   config.triangles = triangles;
-  PushMesh(L, BuildContactMesh(session.scene().object().shape, config));
+  TriangleMesh mesh = BuildContactMesh(session.scene().object().shape, config);
+  const auto bytes = static_cast<std::size_t>(mesh.V.size()) * sizeof(double) +
+                     static_cast<std::size_t>(mesh.F.size()) * sizeof(int);
+  PushMesh(L, ShareArrayData(L, std::move(mesh), bytes));
   return {1};
 }
 
@@ -78,23 +85,29 @@ TriangleShape CalcTriangleShape(const TriangleMesh& mesh, int triangle) {
   return {centre, cross.normalized(), 0.5 * cross.norm()};
 }
 
-void PushMesh(lua_State* L, const TriangleMesh& mesh) {
-  RecordWriter record(L, kMesh);
-  record.Set("num_vertices", static_cast<int>(mesh.V.rows()))
-      .Set("num_triangles", static_cast<int>(mesh.F.rows()))
-      .Set("vertices", mesh.V);
-  LuaMatrix<3, int>::Push(L, mesh.F, 1);  // Lua counts from 1
-  record.SetTop("triangles");
-  std::vector<Vector3> normals, centres;
-  std::vector<double> areas;
-  for (int t = 0; t < mesh.F.rows(); ++t) {
-    const TriangleShape shape = CalcTriangleShape(mesh, t);
-    normals.push_back(shape.nhat_O);
-    areas.push_back(shape.area);
-    centres.push_back(shape.p_OCentre);
-  }
-  record.Set("normals", normals).Set("areas", areas).Set("centres", centres);
-  record.Set("neighbors", FindNeighbors(mesh));
+void PushMesh(lua_State* L, const std::shared_ptr<const TriangleMesh>& mesh) {
+  const auto count = static_cast<int>(mesh->F.rows());
+  const auto of_triangle = [&](const char* name, auto TriangleShape::*value) {
+    return LuaArray{name, count, [mesh, value](lua_State* state, int triangle) {
+                      const auto field = CalcTriangleShape(*mesh, triangle).*value;
+                      LuaValue<std::decay_t<decltype(field)>>::Push(state, field);
+                    }};
+  };
+  // All of them together, when one is first asked for.
+  const auto neighbors = std::make_shared<std::vector<std::vector<int>>>();
+  const auto push_neighbors = [mesh, neighbors](lua_State* state, int triangle) {
+    if (neighbors->empty()) *neighbors = FindNeighbors(*mesh);
+    LuaValue<std::vector<int>>::Push(state, (*neighbors)[static_cast<std::size_t>(triangle)]);
+  };
+  RecordWriter(L, kMesh)
+      .Set("num_vertices", static_cast<int>(mesh->V.rows()))
+      .Set("num_triangles", count)
+      .Set("vertices", MakeRowArray("Vector3", mesh, mesh->V))
+      .Set("triangles", MakeRowArray("integer[]", mesh, mesh->F, 1))  // Lua counts from 1
+      .Set("normals", of_triangle("Vector3", &TriangleShape::nhat_O))
+      .Set("areas", of_triangle("number", &TriangleShape::area))
+      .Set("centres", of_triangle("Vector3", &TriangleShape::p_OCentre))
+      .Set("neighbors", LuaArray{"integer[]", count, push_neighbors});
 }
 
 std::vector<const Schema*> GeometrySchemas() { return {&kCloud, &kDistance, &kMesh}; }

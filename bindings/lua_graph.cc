@@ -5,6 +5,7 @@
 
 #include "app/core/interrupt.h"
 #include "app/pictures/words.h"
+#include "bindings/lua_array.h"
 #include "bindings/lua_planner.h"
 
 namespace pregrasp {
@@ -312,8 +313,23 @@ std::vector<int> GraphInitial(LuaGraph& graph) {
   }
   return initial;
 }
+// The graph for an array to hold, counted as the script's memory.
+std::shared_ptr<const ContactGraph> HoldGraph(lua_State* L, const LuaGraph& graph) {
+  const auto of = graph.graph();
+  const auto held = ShareArrayData(L, of, of->nodes().size() * sizeof(ContactNode));
+  return {held, held->get()};
+}
+
+LuaArray GraphAllNodes(lua_State* L, LuaGraph& graph) {
+  const auto of = HoldGraph(L, graph);
+  const auto push = [of](lua_State* state, int id) {
+    PushNode(state, of->nodes()[static_cast<std::size_t>(id)]);
+  };
+  return {"ContactState", static_cast<int>(of->nodes().size()), push};
+}
 Pushed GraphMesh(lua_State* L, LuaGraph& graph) {
-  PushMesh(L, graph.graph()->mesh());
+  const auto of = HoldGraph(L, graph);
+  PushMesh(L, {of, &of->mesh()});
   return {1};
 }
 
@@ -565,6 +581,7 @@ const ClassInfo& GraphClass() {
                                   Property<&GraphNodes>("num_nodes"),
                                   Property<&GraphEdges>("num_edges"),
                                   Property<&GraphTopPercent>("top_percent"),
+                                  Property<&GraphAllNodes>("nodes"),
                                   Property<&GraphInitial>("initial"),
                                   Property<&GraphKept>("kept"),
                                   Property<&GraphMesh>("mesh"),

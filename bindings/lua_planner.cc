@@ -61,7 +61,7 @@ Pushed PushIpairs(lua_State* L) {
 std::vector<const ClassInfo*> PlannerClasses() {
   return {&GraphClass(),     &ReasonClass(),     &PathsClass(),  &PathClass(),
           &OptimizerClass(), &TrajectoryClass(), &GraspsClass(), &GraspClass(),
-          &MotionClass(),    &FrameClass(),      &PlanClass()};
+          &MotionClass(),    &FrameClass(),      &PlanClass(),   &ArrayClass()};
 }
 
 }  // namespace pregrasp

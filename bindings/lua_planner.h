@@ -7,6 +7,7 @@
 #include "app/graph/contact_path.h"
 #include "app/job/run_steps.h"
 #include "app/pictures/reasons.h"
+#include "bindings/lua_array.h"
 #include "bindings/lua_session.h"
 #include "bindings/planner_options.h"
 
@@ -216,11 +217,12 @@ void PushCost(lua_State* L, const CostFacts& cost);
 Pushed PushExplanation(lua_State* L, const Explanation& why);
 
 // What an optimiser's iteration did (lua_rollouts.cc).
-Pushed OptimizerRollouts(lua_State* L, LuaOptimizer& optimizer);
+LuaArray OptimizerRollouts(LuaOptimizer& optimizer);
 Pushed OptimizerElite(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& count);
 Pushed OptimizerRollout(lua_State* L, LuaOptimizer& optimizer, int number);
-Pushed OptimizerTrace(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& number,
-                      const std::optional<int>& every);
+LuaArray OptimizerTrace(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& number,
+                        const std::optional<int>& every);
+LuaArray TrajectoryTrace(lua_State* L, LuaTrajectory& trajectory, const std::optional<int>& every);
 Pushed OptimizerWhy(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& number);
 Pushed OptimizerWhyNot(lua_State* L, LuaOptimizer& optimizer, int number,
                        const std::optional<int>& other);
@@ -236,11 +238,11 @@ std::vector<std::string> SessionIds(Session& session);
 std::string SessionSaveState(lua_State* L, const std::shared_ptr<Session>& session,
                              const std::string& dir, const std::optional<AnyPlace>& at);
 Pushed SessionWhy(lua_State* L, const std::shared_ptr<Session>& session);
-/// The finished grasps of the certificate that a node follows, as trajectory:grasps{} gives them.
-std::shared_ptr<LuaGrasps> FindGrasps(const std::shared_ptr<Session>& session,
 Pushed SessionWhyNot(lua_State* L, Session& session, int path);
 /// @throws InputError for what is no path's rank.
 void RequireRank(int path);
+/// The finished grasps of the certificate that a node follows, as trajectory:grasps{} gives them.
+std::shared_ptr<LuaGrasps> FindGrasps(const std::shared_ptr<Session>& session,
                                       const Timeline::Node& certified, nlohmann::json options);
 
 // The same in another scene (lua_what_if.cc).

@@ -79,16 +79,53 @@ void PushRollout(lua_State* L, const IterationFacts& facts, int number, const Mp
   record.SetTop("stages");
 }
 
+int RequireStride(const std::optional<int>& every) {
+  const int stride = every.value_or(10);
+  if (stride >= 1) return stride;
+  throw InputError("", "every", "a whole number of physics steps from 1", std::to_string(stride));
+}
+
+// Every `stride`-th of `count` rows, and the last.
+std::vector<int> RowsOfTrace(int count, int stride) {
+  std::vector<int> rows;
+  for (int i = 0; i < count; i += stride) rows.push_back(i);
+  if (count > 0 && rows.back() != count - 1) rows.push_back(count - 1);
+  return rows;
+}
+
+void PushTraceRow(lua_State* L, const WorldState& at) {
+  RecordWriter record(L, kTraceRow);
+  record.Set("t", at.t);
+  PushTransform(L, at.bodies.front().X_WB());
+  record.SetTop("X_WO");
+  lua_createtable(L, 0, 0);
+  lua_Integer count = 0;
+  for (int f = 0; f < kNumFingers; ++f) {
+    const FingertipState& tip = at.fingers[f];
+    if (!tip.on) continue;
+    RecordWriter(L, kTraceFinger)
+        .Set("finger", static_cast<Finger>(f))
+        .Set("touching", tip.touching)
+        .Set("slipping", tip.slipping)
+        .Set("p_WF", tip.p_WF)
+        .Set("p_WTarget", tip.p_WTarget)
+        .Set("f_W", tip.f_W);
+    lua_rawseti(L, -2, ++count);
+  }
+  record.SetTop("fingers");
+}
+
 }  // namespace
 
-Pushed OptimizerRollouts(lua_State* L, LuaOptimizer& optimizer) {
-  lua_createtable(L, 0, 0);
-  if (optimizer.facts() == nullptr) return {1};
-  for (int i = 1; i <= std::ssize(optimizer.facts()->rollouts); ++i) {
-    PushRollout(L, *optimizer.facts(), i, nullptr, nullptr);
-    lua_rawseti(L, -2, i);
-  }
-  return {1};
+LuaArray OptimizerRollouts(LuaOptimizer& optimizer) {
+  LuaArray rollouts{"Rollout", 0, {}};
+  const IterationFacts* facts = optimizer.facts();
+  if (facts == nullptr) return rollouts;
+  rollouts.count = static_cast<int>(facts->rollouts.size());
+  rollouts.push = [session = optimizer.session, facts](lua_State* L, int rollout) {
+    PushRollout(L, *facts, rollout + 1, nullptr, nullptr);  // the session keeps its steps
+  };
+  return rollouts;
 }
 
 Pushed OptimizerElite(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& count) {
@@ -117,47 +154,48 @@ Pushed OptimizerRollout(lua_State* L, LuaOptimizer& optimizer, int number) {
   return {1};
 }
 
-Pushed OptimizerTrace(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& number,
-                      const std::optional<int>& every) {
+LuaArray OptimizerTrace(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& number,
+                        const std::optional<int>& every) {
   const IterationFacts& facts = LastIteration(optimizer);
   if (number) RequireRollout(facts, *number, "number");
-  const int stride = every.value_or(10);
-  if (stride < 1) {
-    throw InputError("", "every", "a whole number of physics steps from 1", std::to_string(stride));
-  }
+  const int stride = RequireStride(every);
   const auto state = optimizer.state();
   const std::vector<double>& action =
       number ? state->optimization->samples[static_cast<std::size_t>(*number) - 1].action
              : state->optimization->best_action;
   std::vector<TraceRow> trace;
   state->mppi->Simulate(action, &trace);
-  lua_createtable(L, 0, 0);
-  lua_Integer row = 0;
-  for (std::size_t i = 0; i < trace.size(); ++i) {
-    if (i % static_cast<std::size_t>(stride) != 0 && i + 1 != trace.size()) continue;
-    const WorldState& at = trace[i].state;
-    RecordWriter record(L, kTraceRow);
-    record.Set("t", at.t);
-    PushTransform(L, at.bodies.front().X_WB());
-    record.SetTop("X_WO");
-    lua_createtable(L, 0, 0);
-    lua_Integer count = 0;
-    for (int f = 0; f < kNumFingers; ++f) {
-      const FingertipState& tip = at.fingers[f];
-      if (!tip.on) continue;
-      RecordWriter(L, kTraceFinger)
-          .Set("finger", static_cast<Finger>(f))
-          .Set("touching", tip.touching)
-          .Set("slipping", tip.slipping)
-          .Set("p_WF", tip.p_WF)
-          .Set("p_WTarget", tip.p_WTarget)
-          .Set("f_W", tip.f_W);
-      lua_rawseti(L, -2, ++count);
-    }
-    record.SetTop("fingers");
-    lua_rawseti(L, -2, ++row);
+  std::vector<WorldState> rows;
+  for (const int row : RowsOfTrace(static_cast<int>(trace.size()), stride)) {
+    rows.push_back(std::move(trace[static_cast<std::size_t>(row)].state));
+    rows.back().cache = {};
   }
-  return {1};
+  std::size_t bytes = 0;
+  for (const WorldState& row : rows) bytes += sizeof(row) + row.bodies.size() * sizeof(BodyState);
+  const auto shared = ShareArrayData(L, std::move(rows), bytes);
+  const auto push = [shared](lua_State* machine, int row) {
+    PushTraceRow(machine, (*shared)[static_cast<std::size_t>(row)]);
+  };
+  return {"TraceRow", static_cast<int>(shared->size()), push};
+}
+
+LuaArray TrajectoryTrace(lua_State* L, LuaTrajectory& trajectory, const std::optional<int>& every) {
+  const auto certificate = trajectory.state()->certificate;
+  const std::vector<TraceRow>& trace = certificate->trace;
+  std::vector<int> rows = RowsOfTrace(static_cast<int>(trace.size()), RequireStride(every));
+  std::size_t bytes = rows.size() * sizeof(int);
+  for (const TraceRow& row : trace) {
+    bytes += sizeof(row) + row.state.bodies.size() * sizeof(BodyState) +
+             row.state.cache.size() * sizeof(WorldState::CachedImpulse) +
+             row.contacts.size() * sizeof(ContactPoint);
+  }
+  const auto count = static_cast<int>(rows.size());
+  const auto push = [held = ShareArrayData(L, certificate, bytes), &trace, rows = std::move(rows)](
+                        lua_State* state, int row) {
+    const int step = rows[static_cast<std::size_t>(row)];
+    PushTraceRow(state, trace[static_cast<std::size_t>(step)].state);
+  };
+  return {"TraceRow", count, push};
 }
 
 Pushed OptimizerWhy(lua_State* L, LuaOptimizer& optimizer, const std::optional<int>& number) {

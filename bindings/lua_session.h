@@ -115,7 +115,7 @@ std::vector<const Schema*> GeometrySchemas();
 // The geometry calls of a session.
 Pushed PushCloud(lua_State* L, Session& session, int points);
 Pushed PushDistance(lua_State* L, Session& session, const Vector3& p_W);
-void PushMesh(lua_State* L, const TriangleMesh& mesh);
+void PushMesh(lua_State* L, const std::shared_ptr<const TriangleMesh>& mesh);
 /// A triangle of a contact mesh.
 struct TriangleShape {
   Vector3 p_OCentre, nhat_O;  ///< its outward normal

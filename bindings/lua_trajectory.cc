@@ -423,6 +423,7 @@ const ClassInfo& TrajectoryClass() {
                                   Method<&TrajectoryGrasps>("grasps", "options"),
                                   Query<&TrajectoryWhy>("why"),
                                   Query<&TrajectoryWhyNot>("why_not", "other"),
+                                  Query<&TrajectoryTrace>("trace", "every"),
                                   Query<&TrajectoryBody>("body", "name"),
                                   Method<&TrajectoryShot>("shot", "options"),
                               },

@@ -53,6 +53,14 @@ int ObjectLength(lua_State* L) {
   return 1;
 }
 
+// pairs(x) of a list: its items in order.
+int ListPairs(lua_State* L) {
+  lua_getglobal(L, "ipairs");
+  lua_pushvalue(L, 1);
+  lua_call(L, 1, 3);
+  return 3;
+}
+
 // pairs(x) of an object: its properties as a table, by the script's own pairs. Upvalues: properties
 // by name, the class.
 int ObjectPairs(lua_State* L) {
@@ -97,6 +105,8 @@ int ReadMember(lua_State* L) {
 int RefuseMember(lua_State* L) {
   return Protect(L, [L]() -> int {
     const auto& info = *static_cast<const ClassInfo*>(lua_touserdata(L, lua_upvalueindex(1)));
+    if (info.list)
+      throw InputError(info.name + ": can only be read; x:table() is a copy to change");
     const std::string key = KeyText(L, 2);
     const std::vector<std::string> names = MemberNames(info);
     if (std::find(names.begin(), names.end(), key) == names.end()) {
@@ -220,7 +230,7 @@ void PushClassMetatable(lua_State* L, const ClassInfo& info, lua_CFunction destr
   }
   PushFunctions(L, info.properties);
   lua_pushlightuserdata(L, Identity(&info));
-  lua_pushcclosure(L, ObjectPairs, 2);
+  lua_pushcclosure(L, info.list ? ListPairs : ObjectPairs, 2);
   lua_setfield(L, -2, "__pairs");
   PushFunctions(L, info.methods);
   PushFunctions(L, info.properties);

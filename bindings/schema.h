@@ -30,6 +30,7 @@ struct ClassInfo {
   std::vector<FunctionInfo> properties;
   lua_CFunction to_string = nullptr;   ///< null: the class's name
   const FunctionInfo* item = nullptr;  ///< what x[number] gives; null: nothing
+  bool list = false;                   ///< pairs(x) goes through its items, not its properties
 };
 
 /// "unknown key "fricton" (did you mean "friction"?)", or with all legal keys when none is near.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "bindings/lua_array.h"
 #include "bindings/sandbox.h"
 #include "bindings/schema.h"
 #include "bindings/value.h"
@@ -162,6 +163,14 @@ std::string Inline(lua_State* L, int index, int depth) {
       if (count > 0) return InlineList(L, index, count, depth);
       return FieldNames(L, index).empty() ? "{}" : "{..}";
     }
+    case LUA_TUSERDATA:
+      if (const auto array = FindArray(L, index); array && array->count > 0) {
+        PushArrayTable(L, *array, kMostInline);
+        std::string text = InlineList(L, lua_gettop(L), array->count, depth);
+        lua_pop(L, 1);
+        return text;
+      }
+      return ShowText(L, index);
     default:
       return ShowText(L, index);
   }
@@ -315,6 +324,9 @@ std::string ShowValue(lua_State* L, int index, int width) {
   std::string text;
   if (lua_type(L, value) == LUA_TSTRING) {
     text = lua_tostring(L, value);
+  } else if (const auto array = FindArray(L, value); array && array->count > 0) {
+    PushArrayTable(L, *array, kMostRows);
+    text = ShowList(L, lua_gettop(L), array->count, width);
   } else if (const ClassInfo* info = FindClass(L, value)) {
     text = ShowObject(L, value, *info, width);
   } else if (lua_type(L, value) == LUA_TTABLE) {

@@ -62,6 +62,9 @@ struct LuaValue<Finger> {  // by name
   static void Push(lua_State* L, Finger finger) { lua_pushstring(L, FingerName(finger)); }
 };
 
+/// Pushes the list at `index` as a table: an array's items, else the value itself. @returns where.
+int PushList(lua_State* L, int index);
+
 /// A list {a, b, ..} without gaps and without other keys; its length. @throws InputError.
 int CheckList(lua_State* L, int index, const std::string& path, const std::string& expected);
 
@@ -79,13 +82,14 @@ struct LuaValue<Quaternion> {  // {w, x, y, z}
 template <typename T>
 struct LuaValue<std::vector<T>> {
   static std::vector<T> Read(lua_State* L, int index, const std::string& path) {
-    index = lua_absindex(L, index);
+    index = PushList(L, index);
     std::vector<T> values(CheckList(L, index, path, "a list"));
     for (std::size_t i = 0; i < values.size(); ++i) {
       lua_rawgeti(L, index, static_cast<lua_Integer>(i) + 1);
       values[i] = LuaValue<T>::Read(L, -1, path + "[" + std::to_string(i + 1) + "]");
       lua_pop(L, 1);
     }
+    lua_pop(L, 1);
     return values;
   }
   static void Push(lua_State* L, const std::vector<T>& values) {
@@ -108,24 +112,16 @@ struct LuaValue<std::optional<T>> {
   }
 };
 
-template <int kColumns, typename Scalar>
-struct LuaMatrix {  // a list of rows
-  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, kColumns, Eigen::RowMajor>;
-  static void Push(lua_State* L, const Matrix& matrix, Scalar offset = 0) {
+template <>
+struct LuaValue<MatrixX3> {  // a list of rows
+  static void Push(lua_State* L, const MatrixX3& matrix) {
     lua_createtable(L, static_cast<int>(matrix.rows()), 0);
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-      lua_createtable(L, kColumns, 0);
-      for (int j = 0; j < kColumns; ++j) {
-        LuaValue<Scalar>::Push(L, matrix(i, j) + offset);
-        lua_rawseti(L, -2, j + 1);
-      }
+      LuaValue<Vector3>::Push(L, matrix.row(i));
       lua_rawseti(L, -2, i + 1);
     }
   }
 };
-
-template <>
-struct LuaValue<MatrixX3> : LuaMatrix<3, double> {};
 
 /// The fields of a table that follows a schema: unknown keys are refused at once, with the nearest
 /// legal one.

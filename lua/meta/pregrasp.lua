@@ -473,8 +473,18 @@ function Session:cloud(options) end
 
 ---@class Cloud
 ---@field count integer
----@field points Vector3[] [m]
----@field normals Vector3[] outward, unit length
+---@field points Array|Vector3[] [m]
+---@field normals Array|Vector3[] outward, unit length
+
+---A big list that is not copied: a[1] to a[#a], nil beyond, ipairs(a) and pairs(a). It can only be read, and what a[i] gives
+---is made anew each time. A call that takes a list takes it too.
+---@class Array
+---@field count integer #a
+local Array = {}
+
+---Its items as a plain table, a copy: to change, to sort, for table.concat and table.unpack.
+---@return table
+function Array:table() end
 
 ---Signed distance from a world point to everything around the object.
 ---@param point Vector3
@@ -496,12 +506,12 @@ function Session:mesh(options) end
 ---@class Mesh
 ---@field num_vertices integer
 ---@field num_triangles integer
----@field vertices Vector3[] [m]
----@field triangles integer[][] three vertices each, from 1, counter-clockwise from outside
----@field normals Vector3[] of the triangles, outward
----@field areas number[] [m^2]
----@field centres Vector3[] [m]
----@field neighbors integer[][] triangles that share an edge, from 1
+---@field vertices Array|Vector3[] [m]
+---@field triangles Array|integer[][] three vertices each, from 1, counter-clockwise from outside
+---@field normals Array|Vector3[] of the triangles, outward
+---@field areas Array|number[] [m^2]
+---@field centres Array|Vector3[] [m]
+---@field neighbors Array|integer[][] triangles that share an edge, from 1
 
 ---The contact graph, meshed: the first of the planner's stages. Its settings hold for the later ones.
 ---@param options? GraphOptions
@@ -519,6 +529,7 @@ function Session:graph(options) end
 ---@field num_nodes integer ordered pairs of triangles: thumb, index
 ---@field num_edges integer 0 before it is connected
 ---@field top_percent number
+---@field nodes Array|ContactState[] all of them with their scores: node id is nodes[id + 1]
 ---@field initial integer[] ids of the nodes that a path may begin with
 ---@field kept integer[] ids of all kept nodes
 ---@field mesh Mesh
@@ -762,7 +773,7 @@ function Optimizer:forward(steps) end
 function Optimizer:fork(options) end
 
 ---The plans of the last iteration. Where there was a best plan before it, the first is the mean, the second that plan.
----@return Rollout[]
+---@return Array|Rollout[]
 function Optimizer:rollouts() end
 
 ---The rollouts that weigh most in the new mean.
@@ -778,7 +789,7 @@ function Optimizer:rollout(number) end
 ---The whole trajectory of a rollout of the last iteration, simulated again; of the best plan so far without a number.
 ---@param number? integer
 ---@param every? integer physics steps from one row to the next; 10
----@return TraceRow[]
+---@return Array|TraceRow[]
 function Optimizer:trace(number, every) end
 
 ---What made a rollout cost what it does: its terms beside the mean of all; of the cheapest one without a number.
@@ -920,6 +931,16 @@ function Trajectory:grasps(options) end
 ---@return Explanation
 function Trajectory:why() end
 
+---Why it is not another plan's: the numbers of both certificates. "better" is certified, then held in more changed worlds.
+---@param other Trajectory
+---@return Explanation
+function Trajectory:why_not(other) end
+
+---The whole trajectory as it was certified, the hold included.
+---@param every? integer physics steps from one row to the next; 10
+---@return Array|TraceRow[]
+function Trajectory:trace(every) end
+
 ---A body at its end.
 ---@param name string
 ---@return Body
@@ -931,12 +952,6 @@ function Trajectory:shot(options) end
 
 ---@class PlanStage
 ---@field thumb PlanFinger
----Why it is not another plan's: the numbers of both certificates. "better" is certified, then held in more changed worlds.
----@param other Trajectory
----@return Explanation
-function Trajectory:why_not(other) end
-
-
 ---@field index PlanFinger
 
 ---@class PlanFinger
@@ -1000,6 +1015,11 @@ function Grasp:motion(options) end
 ---@return Explanation
 function Grasp:why() end
 
+---Why it is not another, of the same trajectory or not, its lift included: the first that differs of what best() goes by.
+---@param other? Grasp the one that best() gives
+---@return Explanation
+function Grasp:why_not(other) end
+
 ---A picture of the hand in it.
 ---@param options? ShotOptions
 function Grasp:shot(options) end
@@ -1015,11 +1035,6 @@ function Grasp:shot(options) end
 ---@field direction_W Vector3 of the way: nearest to up in which it can leave
 ---@field pushes integer of six pushes with half the weight at the top, those that it withstands
 ---@field soft boolean whether the lift holds with fingers of 150 N/m too
----Why it is not another, of the same trajectory or not, its lift included: the first that differs of what best() goes by.
----@param other? Grasp the one that best() gives
----@return Explanation
-function Grasp:why_not(other) end
-
 ---@field stiff boolean and with 600 N/m
 ---@field forearm_free boolean whether the forearm, 20 cm behind the palm and 3 cm thick, is clear of all bodies at the grasp and at the end
 ---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
@@ -1064,6 +1079,11 @@ function Motion:forward(steps) end
 ---@return Explanation
 function Motion:why() end
 
+---Why it is not another motion, both finished.
+---@param other Motion
+---@return Explanation
+function Motion:why_not(other) end
+
 ---A picture of the last step.
 ---@param options? ShotOptions
 function Motion:shot(options) end
@@ -1079,11 +1099,6 @@ function Motion:shot(options) end
 ---@field max_wrist_speed number [m/s]
 ---@field forearm_free boolean whether the forearm, 20 cm behind the palm and 3 cm thick, is clear of all bodies in every frame
 ---@field over_limits integer frames at which the hand exceeds a limit of speed or acceleration
----Why it is not another motion, both finished.
----@param other Motion
----@return Explanation
-function Motion:why_not(other) end
-
 
 ---@class Frame
 ---@field number integer from 1, in time; of a keyframe, before free parts are given their time
@@ -1106,6 +1121,11 @@ local Frame = {}
 ---@return Explanation
 function Frame:why() end
 
+---Why it is not another: what each gave up, with the numbers of both.
+---@param other Frame
+---@return Explanation
+function Frame:why_not(other) end
+
 ---A picture of it.
 ---@param options? ShotOptions
 function Frame:shot(options) end
@@ -1121,11 +1141,6 @@ function Frame:shot(options) end
 ---@field contacts Contact[] of the last physics step
 ---@field trace StepTrace? of the last physics step; nil unless simulate{ trace = true }
 local Simulation = {}
----Why it is not another: what each gave up, with the numbers of both.
----@param other Frame
----@return Explanation
-function Frame:why_not(other) end
-
 
 ---Puts a finger on the object, at the surface point nearest to p_OC, without force yet.
 ---@param options TouchOptions

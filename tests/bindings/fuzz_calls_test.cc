@@ -94,13 +94,13 @@ local good = {
     trace = function() return random(5) end, why = function() return random(5) end, why_not = function() return random(5) end,
     run = function() return 1 end, set = function() return { sigma = random() } end, set_nominal = function() return random(0, 5) end,
     forward = function() return random(0, 1) end, certify = function() return { hold_seconds = 0.05 } end },
-  Trajectory = { why = function() end, body = function() return "object" end,
+  Trajectory = { why = function() end, why_not = function() return (any()) end, trace = function() return random(0, 50) end, body = function() return "object" end,
     grasps = function() return { samples = 1, points = 100, pairs = 100, max_solves = 1, starts = 1, search_sets = 0 } end },
   Grasps = { all = function() end, best = function() end, why = function() end },
-  Grasp = { motion = function() return {} end, why = function() end },
-  Motion = { back = function() return 0 end, forward = function() return 0 end, why = function() end },
-  Plan = { why = function() end, back = function() return 0 end, forward = function() return random(0, 1) end },
-  Frame = { why = function() end }, Reason = {}, Shape = {}, Scene = {},
+  Grasp = { motion = function() return {} end, why = function() end, why_not = function() return (any()) end },
+  Motion = { back = function() return 0 end, forward = function() return 0 end, why = function() end, why_not = function() return (any()) end },
+  Plan = { why = function() end, why_not = function() return random(3) end, back = function() return 0 end, forward = function() return random(0, 1) end },
+  Frame = { why = function() end, why_not = function() return (any()) end }, Array = { table = function() end }, Reason = {}, Shape = {}, Scene = {},
 }
 local fields = { "t", "num_steps", "object", "fingers", "contacts", "trace", "step_id", "name", "bodies", "stage", "kept",
   "best_cost", "certified", "reasons", "count", "reason", "text", "node", "rank", "score", "terms", 1, 2, -1, "nothing", "iteration" }

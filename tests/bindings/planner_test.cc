@@ -220,6 +220,66 @@ TEST_F(PlannerScriptTest, AFeasibleGraspHasForcesAPoseAndALift) {
             "4\ttrue\ttrue\ttrue\ntrue\ttrue\ttrue\ttrue\ttrue\nboolean\ttrue\ttrue\n");
 }
 
+TEST_F(PlannerScriptTest, AGraspSaysWhyItIsNotAnother) {
+  EXPECT_EQ(Script(kCube + std::string(R"(
+    local best, others = gr:best(), 0
+    for _, x in gr:all() do
+      local why, back = x:why_not(best), best:why_not(x)
+      assert(why.text == x:why_not().text)
+      if x.step_id == best.step_id then
+        assert(why.verdict == "same")
+      else
+        others = others + 1
+        assert(why.verdict == "behind" and back.verdict == "before", why.text)
+        assert(x.feasible or why.text:find(x.text, 1, true))
+      end
+      local number = {}
+      for _, item in ipairs(why.items) do number[item.name] = item end
+      assert(number.margin.other == best.wrench.margin)
+      if x.feasible then
+        assert(number.margin.value == x.wrench.margin)
+        assert(number.lift_slip.value == x.lift.slip_mm and number.lift_slip.other == best.lift.slip_mm)
+      end
+      if number.pushes then assert(number.pushes.value == x.lift.pushes and number.pushes.other == best.lift.pushes) end
+    end
+    print(others))")),
+            "3\n");
+}
+
+TEST_F(PlannerScriptTest, APlanSaysWhyItIsNotAnotherAndGivesItsWholeTrajectory) {
+  EXPECT_EQ(Script(R"(
+    local o = run(optimizer())
+    local t, other = o:certify{ hold_seconds = 0.05 }, o:certify{ hold_seconds = 0.15 }
+    local why = t:why_not(other)
+    local item = why.items[1]
+    print(item.name, item.value == t.hold_shift_mm, item.other == other.hold_shift_mm, item.limit)
+    print(why.text:find(t.step_id, 1, true) ~= nil, why.text:find(other.step_id, 1, true) ~= nil)
+    local rank = { worse = -1, alike = 0, better = 1 }
+    print(rank[why.verdict] == -rank[other:why_not(t).verdict], t:why_not(t).verdict)
+    local rows = t:trace(1)
+    print(type(rows), #rows == t.num_steps + 1, #t:trace() < #rows, rows[1].t)
+    local last = rows[#rows]
+    print(last.X_WO.p[1] == t.object.p[1], last.X_WO.p[3] == t.object.p[3], math.abs(last.t - t.seconds) < 1e-9)
+    print((pcall(t.trace, t, 0))))"),
+            "hold_shift\ttrue\ttrue\t10.0\ntrue\ttrue\ntrue\talike\nuserdata\ttrue\ttrue\t0.0\n"
+            "true\ttrue\ttrue\nfalse\n");
+}
+
+TEST_F(PlannerScriptTest, AllNodesWithTheirScoresAreAView) {
+  EXPECT_EQ(Script(R"(
+    local g = graph()
+    local before = g.nodes
+    print(type(before), #before, before[1].s_c)
+    g:score()
+    local nodes = g.nodes
+    for id = 0, 143 do
+      local node, same = nodes[id + 1], g:node(id)
+      assert(node.id == id and node.s_c == same.s_c and node.s_n == same.s_n and node.rank_n == same.rank_n)
+    end
+    print(nodes[145], before[1].s_c, #nodes:table(), nodes))"),
+            "userdata\t144\t0.0\nnil\t0.0\t144\tArray(144 ContactState)\n");
+}
+
 TEST_F(PlannerScriptTest, WhatTheSearchFindsComesAfterTheSamplesAndSaysSo) {
   EXPECT_EQ(Script(kCube + std::string(R"(
     local t = run(pruned(s):paths{ stages = 1 }:next():optimize{ samples = 6, iterations = 2 }):certify{ hold_seconds = 0.1 }
@@ -262,6 +322,24 @@ TEST_F(PlannerScriptTest, AHandMotionIsSolvedKeyByKeyAndFrameByFrame) {
     print(gr:best():motion{}.num_frames > n))")),
             "reverse\t0\tnil\tfalse\ntrue\ttrue\ttrue\tfalse\ntrue\ntrue\ttrue\ttrue\ttrue\n"
             "false\ttrue\n0\nforward\t2\ntrue\n");
+}
+
+TEST_F(PlannerScriptTest, AFrameAndAMotionSayWhyTheyAreNotOthers) {
+  EXPECT_EQ(Script(kCube + std::string(R"(
+    local m, keys = gr:best():motion(quick), {}
+    for key in m:keyframes() do keys[#keys + 1] = key end
+    local why = keys[1]:why_not(keys[2])
+    print(why.items[1].name, why.items[1].value == keys[1].tip_error_mm, why.items[1].other == keys[2].tip_error_mm)
+    print(keys[1]:why_not(keys[1]).verdict, why.text:find(keys[2]:why().text, 1, true) ~= nil)
+    print((pcall(m.why_not, m, m)))
+    m:finish()
+    quick.order = "forward"
+    local f = gr:best():motion(quick)
+    f:finish()
+    local against = f:why_not(m)
+    print(against.items[1].name, against.items[1].value == f.summary.failed, against.items[1].other == m.summary.failed)
+    print(m:why_not(m).verdict))")),
+            "tip_error\ttrue\ttrue\nalike\ttrue\nfalse\nfailed\ttrue\ttrue\nalike\n");
 }
 
 TEST_F(PlannerScriptTest, AFinishedMotionIsTheRuns) {

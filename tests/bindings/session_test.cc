@@ -1,7 +1,10 @@
 // Scripts in the real machine, one claim at a time. Scenes are built in the script.
 #include <gtest/gtest.h>
 
+#include <pthread.h>
+
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -380,6 +383,92 @@ TEST(SessionBindingTest, AnInterruptEndsALoopOfSlowCallsAtOnce) {
   interrupter.join();
   ClearInterrupt();
   EXPECT_LT(seconds, 0.3);
+}
+
+// The thread's time from the interrupt, which comes after `delay`, to the script's end [s]. Not the
+// clock's, which counts whatever else the machine does.
+double SecondsToStop(const std::string& body, std::chrono::milliseconds delay) {
+  clockid_t clock{};
+  pthread_getcpuclockid(pthread_self(), &clock);
+  const auto seconds = [&] {
+    timespec time{};
+    clock_gettime(clock, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  };
+  const double begin = seconds();
+  double asked = 0.0;
+  std::thread interrupter([&] {
+    while (seconds() - begin < 1e-3 * static_cast<double>(delay.count())) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    asked = seconds();
+    RequestInterrupt();
+  });
+  EXPECT_THROW(Script(body), Interrupted);
+  const double ended = seconds();
+  interrupter.join();
+  ClearInterrupt();
+  return ended - asked;
+}
+
+TEST(SessionBindingTest, AnInterruptEndsALongCallWithinAThirdOfASecond) {
+  const std::string calls[] = {
+      // the cloud's surface is reconstructed, points are spread
+      "while true do pg.open('scenes/paper_roll_cloud.lua'):cloud{ points = 4096 } end",
+      "while true do open():graph{ triangles = 200 }:score() end",
+      "while true do open():verdict() end",
+      "local s = open() while true do s:shot{ file = 'out/a.png', size = { 3840, 2160 } } end",
+  };
+  for (const std::string& call : calls) {
+    for (const int milliseconds : {100, 500, 1000}) {
+      EXPECT_LT(SecondsToStop(call, std::chrono::milliseconds(milliseconds)), 0.3)
+          << call << ", " << milliseconds << " ms";
+    }
+  }
+}
+
+TEST(SessionBindingTest, BigListsAreViewsThatReadAsTables) {
+  EXPECT_EQ(Script(R"(
+    local s = open()
+    local c = s:cloud{ points = 50 }
+    local points = c.points
+    print(type(points), points, #points, points.count, points[0], points[51], #points[1])
+    local n, last = 0 for i, p in ipairs(points) do n, last = n + 1, p assert(i == n) end
+    local m = 0 for i, p in pairs(points) do m = m + 1 assert(p[3] == points[i][3]) end
+    print(n, m, last[1] == points[50][1])
+    local copy = points:table()
+    copy[1] = copy[2] table.sort(copy, function(a, b) return a[1] < b[1] end)
+    print(#copy, #points, copy[1][1] <= copy[50][1])
+    print(select(2, pcall(function() points[1] = {0, 0, 0} end)):match "Array.*")
+    local mesh = s:mesh{ triangles = 12 }
+    print(#mesh.vertices, #mesh.triangles, #mesh.normals, #mesh.areas, #mesh.centres, #mesh.neighbors)
+    local area = 0 for _, a in ipairs(mesh.areas) do area = area + a end
+    print(("%.4f"):format(area), table.concat(mesh.neighbors[1], ' ') ~= '', mesh.triangles[1][1] >= 1)
+    -- a list is taken where a table is
+    print(pg.wrench{ p = points, n = c.normals, mu = 0.5 }.status ~= '')
+  )"),
+            "userdata\tArray(50 Vector3)\t50\t50\tnil\tnil\t3\n50\t50\ttrue\n50\t50\ttrue\n"
+            "Array: can only be read; x:table() is a copy to change\n"
+            "8\t12\t12\t12\t12\t12\n0.0600\ttrue\ttrue\ntrue\n");
+}
+
+TEST(SessionBindingTest, ViewsCountAsTheScriptsMemory) {
+  const TestFolder folder;
+  ScriptConfig config = ConfigIn(folder);
+  config.machine.bytes = 16U << 20U;
+  EXPECT_EQ(
+      RunIn(folder, "local s = open() for _ = 1, 60 do s:cloud{ points = 2000 } end print 'fine'",
+            config),
+      "fine\n");
+  try {
+    RunIn(folder,
+          "local s, held = open(), {}\nfor i = 1, 200 do held[i] = s:cloud{ points = 2000 }.points "
+          "end",
+          config);
+    FAIL() << "no failure";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("MB"), std::string::npos) << error.what();
+  }
 }
 
 TEST(SessionBindingTest, ANameWithAZeroByteIsRefused) {

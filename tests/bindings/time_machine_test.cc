@@ -252,7 +252,8 @@ TEST_F(TimeMachineTest, AWholeRunIsTakenStepByStepBackAndForth) {
     local never = plan:why_not(9999) print(never.verdict, never.text:find("Path 9999 was not tried", 1, true) ~= nil)
     print(never.items[1].value, never.items[#never.items].name, (pcall(plan.why_not, plan, 0))))"),
       "Plan(1 step)\topen\ttrue\tscene.verdict\ntrue\tgraph.score\t3\npath.1.mppi.1\ttrue\n"
-      "true\npath.1.mppi.1\ntrue\tpath.1.mppi.2\ntrue\ttrue\tfalse\t1\ntrue\ttrue\tsame\ntrue\n");
+      "true\npath.1.mppi.1\ntrue\tpath.1.mppi.2\ntrue\ttrue\tfalse\t1\ntrue\ttrue\tsame\ntrue\n"
+      "same\ttrue\nworse\ttrue\nnil\tlifting\tfalse\n");
 }
 
 TEST_F(TimeMachineTest, ACheckIsOfTheSceneAndOfOneThatCannotBeOpened) {
