@@ -175,7 +175,11 @@ void GoTo(lua_State* L, LuaSimulation& sim, int count) {
   options["stopped_after"] = count - begins;
   const std::size_t nodes = timeline.nodes().size();
   sim.node = &timeline.Do(*at->parent, at->command.verb, std::move(options));
-  CountSteps(L, sim, nodes, begins);
+  // It shares its past with the whole action.
+  constexpr int kNodeKib = 4, kStatesPerKib = 64;
+  if (timeline.nodes().size() > nodes) {
+    CountMemory(L, *sim.session, kNodeKib + count / kStatesPerKib);
+  }
 }
 
 // Takes physics steps back, exactly.

@@ -69,9 +69,8 @@ void ApplyVerb(internal::Application& a) {
   }
 }
 
-}  // namespace
-
-Applied Apply(Job& job, const std::shared_ptr<const JobState>& state, const Command& command) {
+Applied ApplyWith(Job& job, const std::shared_ptr<const JobState>& state, const Command& command,
+                  const Simulation* whole) {
   const bool opens = command.verb == Verb::kOpen;
   PREGRASP_CHECK(opens == (state == nullptr), VerbName(command.verb));
   JobState next;
@@ -88,12 +87,23 @@ Applied Apply(Job& job, const std::shared_ptr<const JobState>& state, const Comm
   applied.facts.command = command;
   applied.facts.details = MakeDetails(command.verb);
   internal::SetWorldFacts(applied.facts, job.world(), next.start, {});
-  internal::Application application{job, command, next, applied.facts};
+  internal::Application application{job, command, next, applied.facts, false, whole};
   ApplyVerb(application);
   PREGRASP_CHECK(!applied.facts.id.empty(), VerbName(command.verb));
   applied.interrupted = application.interrupted;
   applied.state = std::make_shared<const JobState>(std::move(next));
   return applied;
+}
+
+}  // namespace
+
+Applied Apply(Job& job, const std::shared_ptr<const JobState>& state, const Command& command) {
+  return ApplyWith(job, state, command, nullptr);
+}
+
+Applied internal::ApplyPart(Job& job, const std::shared_ptr<const JobState>& state,
+                            const Command& command, const Simulation& whole) {
+  return ApplyWith(job, state, command, &whole);
 }
 
 const char* TimedStage(Verb verb) {

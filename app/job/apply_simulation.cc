@@ -53,10 +53,14 @@ void ApplySimulation(Application& a) {
   const WorldState before = simulation.state();
   const int first = simulation.num_states();
   SimulationFacts facts;
-  try {
-    Act(a.command, simulation);
-  } catch (const Interrupted&) {
-    a.interrupted = true;
+  if (a.whole != nullptr) {
+    simulation = *a.whole;
+  } else {
+    try {
+      Act(a.command, simulation);
+    } catch (const Interrupted&) {
+      a.interrupted = true;
+    }
   }
   // Redone, an action ends where it was stopped.
   if (options.Has("stopped_after")) {

@@ -14,7 +14,14 @@ struct Application {
   JobState& next;
   StepFacts& facts;
   bool interrupted = false;
+  /// Of an action that is to be stopped: the simulation after the whole of it. Null: it is done.
+  const Simulation* whole = nullptr;
 };
+
+/// As Apply, for a simulation's action that was stopped (its option stopped_after) where the whole
+/// of it is known: nothing is simulated.
+Applied ApplyPart(Job& job, const std::shared_ptr<const JobState>& state, const Command& command,
+                  const Simulation& whole);
 
 void ApplyScene(Application& a);       // open, settle, verdict
 void ApplyGraph(Application& a);       // mesh, score, prune, path

@@ -7,6 +7,7 @@
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
+#include "app/job/apply_stages.h"
 #include "app/job/facts_json.h"
 #include "app/job/planner_settings.h"
 
@@ -40,6 +41,28 @@ void DropIdleSettings(nlohmann::json& options, const PlannerConfig& config) {
   } else {
     options["settings"] = std::move(changed);
   }
+}
+
+// Of the steps that follow one, that whose action begins as the one asked for and goes on for as
+// many physics steps or more; null where nothing says how many it is to have.
+const Timeline::Node* FindWhole(const std::vector<const Timeline::Node*>& children,
+                                const Command& command) {
+  const char* const kStopped = "stopped_after";
+  const auto stopped = command.options.find(kStopped);
+  if (stopped == command.options.end() || !stopped->is_number_integer()) return nullptr;
+  const auto without = [&](nlohmann::json options) {
+    options.erase(kStopped);
+    return options;
+  };
+  const nlohmann::json asked = without(command.options);
+  for (const Timeline::Node* child : children) {
+    const auto* facts = std::get_if<SimulationFacts>(&child->facts.details);
+    if (facts != nullptr && child->command.verb == command.verb &&
+        facts->physics_steps >= stopped->get<int>() && without(child->command.options) == asked) {
+      return child;
+    }
+  }
+  return nullptr;
 }
 
 // Holds the record of a step against what doing it again gives.
@@ -187,6 +210,10 @@ const Timeline::Node& Timeline::Do(const Node& from, Verb verb, nlohmann::json o
   DropIdleSettings(options, state->config);
   const Command command{verb, from.id(), std::move(options)};
   if (const Node* known = FindChild(from, command)) return Pass(*known);
+  if (const Node* whole = FindWhole(children_[&from], command)) {
+    return Pass(
+        Commit(from, internal::ApplyPart(job_, state, command, *GetState(*whole)->simulation)));
+  }
   return Pass(Commit(from, TimedApply(state, command)));
 }
 

@@ -194,6 +194,31 @@ TEST_F(TimelineTest, AnInterruptedActionIsAStepThatRedoesToTheSame) {
   EXPECT_FALSE(CompareFacts(facts, node.facts).has_value());
 }
 
+TEST_F(TimelineTest, AnActionThatIsStoppedIsTakenFromTheWholeOfItTheSame) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  const Node& touched = timeline.Do(timeline.root(), Verb::kTouch,
+                                    {{"finger", "index"}, {"p_OC", {0.11, 0, 0.0015}}});
+  const nlohmann::json move = {
+      {"finger", "index"}, {"p_WTarget", {0.05, 0, -0.01}}, {"seconds", 0.3}};
+  const Node& whole = timeline.Do(touched, Verb::kMove, move);
+  const int steps = std::get<SimulationFacts>(whole.facts.details).physics_steps;
+  for (const int stopped_after : {0, 1, steps / 2, steps}) {
+    nlohmann::json options = move;
+    options["stopped_after"] = stopped_after;
+    const Node& part = timeline.Do(touched, Verb::kMove, options);
+    const auto state = timeline.GetState(part), of_whole = timeline.GetState(whole);
+    // The moments themselves: nothing was simulated.
+    EXPECT_EQ(&state->simulation->state(),
+              &of_whole->simulation->state_at(state->simulation->num_states() - 1));
+    const Applied again = timeline.Try(touched, Verb::kMove, options);
+    StepFacts facts = again.facts;
+    facts.id = part.id();
+    EXPECT_FALSE(CompareFacts(facts, part.facts).has_value()) << stopped_after;
+    EXPECT_EQ(again.state->simulation->num_states(), state->simulation->num_states());
+  }
+}
+
 TEST_F(TimelineTest, RestoredStepsAreDoneWhenTheirStateIsAskedForAndGoOnAsTheFirstDid) {
   const auto job = MakeJob(), other_job = MakeJob();
   Timeline first(*job), second(*other_job);
