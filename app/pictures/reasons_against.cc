@@ -122,7 +122,8 @@ struct PathProgress {
   const Timeline::Node* furthest = nullptr;  // null: no step of it is there
   const ScreenFacts* screened = nullptr;
   const IterationFacts* optimised = nullptr;
-  int plans = 0, certified = 0;
+  int plans = 0, certified = 0, grasps = 0, lifts = 0;
+  bool moved = false;
 };
 
 int PathOfStep(const StepFacts& facts) {
@@ -148,6 +149,9 @@ PathProgress FollowPath(const Timeline& timeline, int rank) {
       ++path.plans;
       path.certified += certify->certified ? 1 : 0;
     }
+    path.grasps += std::holds_alternative<GraspFacts>(node->facts.details) ? 1 : 0;
+    path.lifts += std::holds_alternative<LiftFacts>(node->facts.details) ? 1 : 0;
+    path.moved = path.moved || std::holds_alternative<FrameFacts>(node->facts.details);
   }
   return path;
 }
@@ -168,15 +172,19 @@ std::string DescribePath(const PathProgress& path, int rank) {
       return fmt::format("came to {} plan{}, of which none is certified", path.plans,
                          path.plans == 1 ? "" : "s");
     case Reached::kCertified:
-      return "came to a certified plan, and to no feasible grasp";
+      return path.grasps == 0 ? "came to a certified plan, of which no grasp was tried"
+                              : fmt::format(
+                                    "came to a certified plan, and none of {} grasps is "
+                                    "feasible",
+                                    path.grasps);
     case Reached::kFeasible:
-      return fmt::format("came to {} feasible grasp{}, of which none lifts", progress.feasible,
-                         progress.feasible == 1 ? "" : "s");
+      return fmt::format("came to {} feasible grasp{}, of which {}", progress.feasible,
+                         progress.feasible == 1 ? "" : "s",
+                         path.lifts == 0 ? "no lift was tried" : "none lifts");
     case Reached::kLifted:
-      return fmt::format(
-          "came to {} grasp{} that lift{}, and to no hand motion without a failed "
-          "frame",
-          progress.lifted, progress.lifted == 1 ? "" : "s", progress.lifted == 1 ? "s" : "");
+      return fmt::format("came to {} grasp{}, and to no hand motion{}", progress.lifted,
+                         progress.lifted == 1 ? " that lifts" : "s that lift",
+                         path.moved ? " without a failed frame" : ", as none was tried");
     case Reached::kMoved:
       return "came to a hand motion, after which a neighbour is disturbed";
     case Reached::kOk:
@@ -194,8 +202,12 @@ Explanation ExplainCertificateAgainst(const Scene& scene, const std::string& id,
   Explanation why;
   why.items = PairItems(own, ExplainCertificate(scene, other, config));
   const auto worlds = [](const CertifyFacts& of) { return of.robust ? of.robust->held : 0; };
-  const auto of_five = [&](const CertifyFacts& of) { return static_cast<double>(worlds(of)); };
-  why.items.push_back({"worlds_held", of_five(facts), of_five(other), {}});
+  const auto known = [](const CertifyFacts& of) {
+    return of.robust ? std::optional<double>(of.robust->held) : std::nullopt;
+  };
+  if (known(facts) || known(other)) {
+    why.items.push_back({"worlds_held", known(facts), known(other), {}});
+  }
   why.verdict = Standing(std::pair(facts.certified, worlds(facts)),
                          std::pair(other.certified, worlds(other)));
   if (facts.certified != other.certified) {
