@@ -32,7 +32,7 @@ CameraView MakeCameraView(const RenderCamera& camera, int width, int height) {
     throw InputError("camera", "p_WCam, p_WTarget", "finite numbers", "nan or inf");
   }
   if (!(camera.fov_deg >= 1.0 && camera.fov_deg <= 120.0)) {
-    throw InputError("camera", "fov_deg", "1 to 120 degrees", FormatDouble(camera.fov_deg));
+    throw InputError("camera", "fov_deg", "1 to 120 deg", FormatDouble(camera.fov_deg));
   }
   const Vector3 back = camera.p_WCam - camera.p_WTarget;
   const double distance = back.norm();

@@ -98,7 +98,7 @@ std::string ExplainReason(const LiftResult& lift, LiftReason reason, const Scene
                          FingerName(lift.deepest_tip), 1e3 * lift.tip_overlap);
     case LiftReason::kDoesNotFollow:
       return fmt::format(
-          "the object does not follow: it comes to be {:.0f} mm and {:.0f} degrees off",
+          "the object does not follow: it comes to be {:.0f} mm and {:.0f} deg off",
           1e3 * lift.shift, lift.turn_deg);
     case LiftReason::kStillTouches:
       return fmt::format("{} still touches the object at the end",
@@ -164,7 +164,7 @@ bool WithstandsMore(const LiftResult& a, const LiftResult& b) {
 std::string Explain(const LiftResult& lift, const Scene& scene) {
   if (lift.held) {
     return fmt::format(
-        "lifted {:.0f} mm, at most {:.1f} mm and {:.1f} degrees off; {} of {} pushes held; {}with "
+        "lifted {:.0f} mm, at most {:.1f} mm and {:.1f} deg off; {} of {} pushes held; {}with "
         "fingers of {:.0f} N/m, {}with {:.0f} N/m",
         1e3 * lift.height, 1e3 * lift.shift, lift.turn_deg, lift.pushes, kNumPushes,
         lift.soft ? "" : "not ", kSoftStiffness, lift.stiff ? "" : "not ", kStiffStiffness);

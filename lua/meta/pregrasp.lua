@@ -4,9 +4,10 @@
 -- planner's stages (GraphOptions, OptimizeOptions, ..) are the table of settings': the build writes them to
 -- build/release/lua/options.lua (`pregrasp info --annotations`).
 --
--- Units are SI and radians; a name ending in _mm, _deg or _N says otherwise. A point {x, y, z} is in
--- the frame that its name ends in: p_OC is the contact C in the object's frame O, p_W is in the world.
--- Quaternions are {w, x, y, z}. Reading or setting a name that is not here is an error.
+-- Units are SI and radians: points and lengths in m, times in s, forces in N, angles in rad. A name ending in _mm or _deg
+-- says otherwise, one ending in _N or _J only says so. Scores, costs and their terms, weights and shares have no unit; nhat is
+-- of unit length. A point {x, y, z} is in the frame that its name ends in: p_OC is the contact C in the object's frame O, p_W
+-- is in the world. Quaternions are {w, x, y, z}. Reading or setting a name that is not here is an error.
 
 ---@alias Vector3 number[] {x, y, z}
 ---@alias FingerName "thumb"|"index"|"middle"|"ring"|"little"
@@ -176,10 +177,10 @@ function pregrasp.union(parts) end
 
 ---@class FingertipsTable
 ---@field friction? number 0.8, between a fingertip and any body
----@field max_force? number 12 N
----@field stiffness? number 50 N/m, while pushing
+---@field max_force? number largest force of a finger [N], 12
+---@field stiffness? number of a finger's spring while pushing [N/m], 50
 ---@field damping? number 0.7, a multiple of sqrt(stiffness * object's mass)
----@field grasp_stiffness? number 300 N/m, while a grasp closes and lifts
+---@field grasp_stiffness? number while a grasp closes and lifts [N/m], 300
 
 ---@class CameraTable
 ---@field p Vector3 where it stands [m]
@@ -188,7 +189,7 @@ function pregrasp.union(parts) end
 
 ---@class PlacedShapeTable
 ---@field shape Shape
----@field p? Vector3
+---@field p? Vector3 [m]
 ---@field rpy_deg? Vector3
 
 ---@class BoxTable
@@ -252,7 +253,7 @@ function Session:check() end
 function Session:settle(options) end
 
 ---@class SettleOptions
----@field seconds? number 1
+---@field seconds? number [s], 1
 
 ---@class SettleResult
 ---@field moved_mm number the furthest that a centre of mass was from its start
@@ -304,9 +305,9 @@ function Session:break_when(predicate) end
 ---@field speed number? step: of the object [m/s]
 ---@field a string? contact: a body's name
 ---@field b string? contact: the other's
----@field p_W Vector3? contact
+---@field p_W Vector3? contact [m]
 ---@field penetration number? contact: overlap before the step [m], 0 without
----@field force_N number? contact, finger
+---@field force_N number? contact, finger [N]
 ---@field slip_speed number? contact: [m/s]
 ---@field finger FingerName? finger
 ---@field touching boolean? finger
@@ -446,7 +447,7 @@ function Plan:save(dir) end
 ---@field value number?
 ---@field other number? what it is compared with: the text says what that is
 ---@field limit number? that it had to keep
----@field unit string
+---@field unit string of these numbers, as "mm"; "" for none
 ---@field met boolean? whether it did
 
 ---A body at the start.
@@ -583,7 +584,7 @@ function Graph:triangles(options) end
 ---@field node integer the id of the best one
 ---@field kept integer how many such nodes the graph keeps
 ---@field fits boolean the fingertip can be somewhere on it at the start
----@field p_OCentre Vector3
+---@field p_OCentre Vector3 [m]
 ---@field nhat_O Vector3 outward normal
 ---@field area number [m^2]
 
@@ -717,7 +718,7 @@ function Path:shot(options) end
 ---@field best CostTerms of the best plan so far
 ---@field nominal RolloutStage[]? the mean that the next iteration's noise is about, as a plan; nil before the first
 ---@field plans PlanChoice[] those kept because their ends differ, the best first: what certify(options, plan) numbers
----@field sigma number of the next iteration's noise
+---@field sigma number standard deviation of the next iteration's noise, in the plan's own scales: no unit
 ---@field settings table<string, number|string|boolean> of the next iteration, as OptimizeOptions
 ---@field converged boolean it ended for want of progress, not at the limit of iterations
 ---@field best_history number[] best_cost after each iteration
@@ -850,7 +851,7 @@ function Optimizer:shot(options) end
 ---@field on boolean
 ---@field kept boolean it was on in the stage before, and keeps its contact
 ---@field triangle integer that it may touch
----@field p_OC Vector3? contact point in the object's frame; nil unless it is put on here
+---@field p_OC Vector3? contact point in the object's frame [m]; nil unless it is put on here
 ---@field nhat_O Vector3? outward normal there
 ---@field knots RolloutKnot[]
 
@@ -875,8 +876,8 @@ function Optimizer:shot(options) end
 ---@field finger FingerName
 ---@field touching boolean
 ---@field slipping boolean
----@field p_WF Vector3 the fingertip point
----@field p_WTarget Vector3 where its spring pulls
+---@field p_WF Vector3 the fingertip point [m]
+---@field p_WTarget Vector3 where its spring pulls [m]
 ---@field f_W Vector3 force on the object [N]
 
 ---@class NeighbourMotion how far movable bodies other than the object are from where the scene has them
@@ -906,7 +907,7 @@ function Optimizer:shot(options) end
 ---@field max_tip_overlap_mm number of a fingertip with the surroundings
 ---@field max_speed number of the object [m/s]
 ---@field max_force_N number of a finger
----@field seconds number simulated
+---@field seconds number simulated [s]
 ---@field waits number[] before each stage, for the hand to bring its fingers to new contacts [s]
 ---@field out_of_reach_t number? when the hand was found to have no pose for the contacts [s]; nil if it has one, or the plan fails otherwise
 ---@field neighbours NeighbourMotion at its end
@@ -957,13 +958,13 @@ function Trajectory:shot(options) end
 ---@class PlanFinger
 ---@field on boolean
 ---@field kept boolean it was on in the stage before, and keeps its contact
----@field p_OC Vector3 contact point in the object's frame
+---@field p_OC Vector3 contact point in the object's frame [m]
 ---@field nhat_O Vector3 outward normal there
----@field p_WTargets Vector3[] where its spring pulls at the end of each knot
+---@field p_WTargets Vector3[] where its spring pulls at the end of each knot [m]
 
 ---@class GraspContact
 ---@field finger FingerName
----@field p_OC Vector3 in the object's frame
+---@field p_OC Vector3 in the object's frame [m]
 ---@field nhat_O Vector3 outward normal there
 
 ---The grasps by sample, then those that the search found: grasps[1] is the first; nil beyond the last.
@@ -1032,7 +1033,7 @@ function Grasp:shot(options) end
 ---@field shift_mm number the farthest it was from where it should be
 ---@field turn_deg number the most that it turned
 ---@field slip_mm number the farthest that a fingertip slid
----@field direction_W Vector3 of the way: nearest to up in which it can leave
+---@field direction_W Vector3 of the way, unit length: nearest to up in which it can leave
 ---@field pushes integer of six pushes with half the weight at the top, those that it withstands
 ---@field soft boolean whether the lift holds with fingers of 150 N/m too
 ---@field stiff boolean and with 600 N/m
@@ -1159,8 +1160,8 @@ function Simulation:move(options) end
 ---@class MoveOptions
 ---@field finger FingerName
 ---@field by? Vector3 in the world, from where the target is [m]; either this
----@field to? Vector3 or this
----@field seconds? number 1
+---@field to? Vector3 or this [m]
+---@field seconds? number [s], 1
 
 ---Takes a finger off.
 ---@param options LiftOptions
@@ -1175,7 +1176,7 @@ function Simulation:lift(options) end
 function Simulation:wait(options) end
 
 ---@class WaitOptions
----@field seconds? number 1
+---@field seconds? number [s], 1
 
 ---Physics steps with the targets where they are.
 ---@param steps? integer 1
@@ -1219,15 +1220,15 @@ function Simulation:body(name) end
 ---@field on boolean
 ---@field touching boolean pressed on the surface in the last step
 ---@field slipping boolean at the limit of friction in the last step
----@field force_N number on the object
+---@field force_N number on the object [N]
 ---@field normal_N number its part that presses
 ---@field friction_N number its part along the surface
 ---@field limit_N number what friction can give at this pressure
 ---@field slip_mm number slid over the surface since it was put on
----@field p_OC Vector3 contact point in the object's frame
+---@field p_OC Vector3 contact point in the object's frame [m]
 ---@field nhat_O Vector3 outward normal there
----@field p_WF Vector3 the fingertip point
----@field p_WTarget Vector3 where its spring pulls
+---@field p_WF Vector3 the fingertip point [m]
+---@field p_WTarget Vector3 where its spring pulls [m]
 ---@field f_W Vector3 force on the object [N]
 
 ---@class StepTrace
@@ -1238,7 +1239,7 @@ function Simulation:body(name) end
 ---@class Contact
 ---@field a string a body's name
 ---@field b string the other's
----@field p_W Vector3
+---@field p_W Vector3 [m]
 ---@field nhat_W Vector3 from a to b
 ---@field f_W Vector3 force on b [N]
 ---@field force_N number
@@ -1309,7 +1310,7 @@ function pregrasp.ik(options) end
 ---@field method string whose solution it is
 
 ---@class Transform
----@field p Vector3
+---@field p Vector3 [m]
 ---@field q number[] {w, x, y, z}
 
 ---Joint angles by the hand's own names [rad]; here those of the Shadow Hand.

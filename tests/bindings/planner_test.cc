@@ -265,6 +265,57 @@ TEST_F(PlannerScriptTest, APlanSaysWhyItIsNotAnotherAndGivesItsWholeTrajectory) 
             "true\ttrue\ttrue\nfalse\n");
 }
 
+TEST_F(PlannerScriptTest, NumbersOfThePlannerAreInTheUnitsThatTheManualSays) {
+  EXPECT_EQ(Script(kCube + std::string(R"(
+    local function near(what, a, b, share)
+      if math.abs(a - b) > (share or 1e-9) * math.max(math.abs(a), math.abs(b), 1e-9) then print(what, a, b) end
+    end
+    local best, number = gr:best(), {}
+    for _, item in ipairs(best:why().items) do number[item.name] = item print(item.name, item.unit) end
+    near("tip_error", number.tip_error.value, 1000 * best.ik.tip_error)
+    near("clearance", number.clearance.value, 1000 * best.ik.clearance)
+    near("height", number.lift_height.value, 1000 * best.lift.height)
+    near("slip_mm", number.lift_slip.value, best.lift.slip_mm)
+    local m = best:motion(quick) m:finish()
+    local joints, wrist, worst, least, last = 0, 0, 0, 1e9, nil
+    for frame in m:frames() do
+      worst, least = math.max(worst, frame.tip_error_mm), math.min(least, frame.clearance_mm)
+      if last then
+        local dt = frame.t - last.t
+        for name, angle in pairs(frame.q) do joints = math.max(joints, math.abs(angle - last.q[name]) / dt) end
+        local way = 0
+        for i = 1, 3 do way = way + (frame.X_WH.p[i] - last.X_WH.p[i])^2 end
+        wrist = math.max(wrist, math.sqrt(way) / dt)
+      end
+      last = frame
+    end
+    near("max_joint_speed", m.summary.max_joint_speed, joints, 0.02)
+    near("max_wrist_speed", m.summary.max_wrist_speed, wrist, 0.02)
+    near("max_tip_error_mm", m.summary.max_tip_error_mm, worst)
+    near("min_clearance_mm", m.summary.min_clearance_mm, least)
+    local t = run(optimizer()):certify{ hold_seconds = 0.5 }
+    local rows, fastest, force, hold = t:trace(1), 0, 0, nil
+    for i, row in ipairs(rows) do
+      if not hold and row.t >= t.seconds - 0.5 - 1e-9 then hold = row.X_WO.p end
+      for _, f in ipairs(row.fingers) do
+        force = math.max(force, math.sqrt(f.f_W[1]^2 + f.f_W[2]^2 + f.f_W[3]^2))
+      end
+      if i > 1 then
+        local a, b = rows[i - 1], row
+        local way = 0 for k = 1, 3 do way = way + (b.X_WO.p[k] - a.X_WO.p[k])^2 end
+        fastest = math.max(fastest, math.sqrt(way) / (b.t - a.t))
+      end
+    end
+    near("max_speed", t.max_speed, fastest, 0.1)
+    near("max_force_N", t.max_force_N, force, 1e-6)
+    near("seconds", t.seconds, rows[#rows].t)
+    local way = 0 for k = 1, 3 do way = way + (rows[#rows].X_WO.p[k] - hold[k])^2 end
+    near("hold_shift_mm", t.hold_shift_mm, 1000 * math.sqrt(way), 0.05))")),
+            "margin\t\nmin_normal\tN\ntip_error\tmm\nclearance\tmm\nmoved\tmm\nlift_"
+            "height\tmm\nlift_shift\tmm\n"
+            "lift_turn\tdeg\nlift_slip\tmm\n");
+}
+
 TEST_F(PlannerScriptTest, AllNodesWithTheirScoresAreAView) {
   EXPECT_EQ(Script(R"(
     local g = graph()

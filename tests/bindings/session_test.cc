@@ -452,6 +452,58 @@ TEST(SessionBindingTest, BigListsAreViewsThatReadAsTables) {
             "8\t12\t12\t12\t12\t12\n0.0600\ttrue\ttrue\ntrue\n");
 }
 
+TEST(SimulationBindingTest, NumbersAreInTheUnitsThatTheManualSays) {
+  EXPECT_EQ(Script(R"(
+    local function norm(v) return math.sqrt(v[1]^2 + v[2]^2 + v[3]^2) end
+    local function near(what, a, b, share)
+      if math.abs(a - b) > (share or 1e-9) * math.max(math.abs(a), math.abs(b)) then print(what, a, b) end
+    end
+    local s = open()
+    local sim = s:simulate{ trace = true }
+    sim:touch{ finger = "index", p_OC = { 0, 0, 0.05 } }
+    sim:move{ finger = "index", by = { 0, 0, -0.02 }, seconds = 0.3 }
+    local before = sim.fingers.index
+    near("a spring of 50 N/m is deflected by 20 mm", before.normal_N, 1, 0.02)
+    sim:move{ finger = "index", by = { 0.05, 0, 0 }, seconds = 0.5 }
+    local f = sim.fingers.index
+    near("force_N", f.force_N, norm(f.f_W))
+    near("normal_N, friction_N", f.force_N^2, f.normal_N^2 + f.friction_N^2, 1e-6)
+    near("limit_N", f.limit_N, 0.8 * f.normal_N)
+    near("slip_mm", f.slip_mm, 1000 * (f.p_OC[1] - before.p_OC[1]), 0.02)
+    print(f.slip_mm > 20)
+    local up = 0
+    for _, c in ipairs(sim.contacts) do
+      near("a contact's force_N", c.force_N, norm(c.f_W))
+      if c.a == "cube" or c.b == "cube" then up = up + (c.b == "cube" and 1 or -1) * c.f_W[3] end
+    end
+    near("the table carries weight and press", up, 0.2 * 9.81 + f.normal_N, 0.02)
+    near("potential_J", sim.trace.potential_J, 2 * 0.2 * 9.81 * 0.05, 1e-3)
+    local gaps, slips, deepest, fastest, force = 0, 0, 0, 0, 0
+    s:break_when(function(e)
+      if e.kind == "contact" then
+        deepest, fastest = math.max(deepest, e.penetration), math.max(fastest, e.slip_speed)
+      elseif e.kind == "finger" then
+        force = e.force_N near("an event's slip_mm", e.slip_mm, f.slip_mm, 0.1)
+      end
+    end)
+    sim:step(1)
+    for _, c in ipairs(sim.contacts) do gaps, slips = math.max(gaps, -c.gap_mm), math.max(slips, c.slip_speed) end
+    near("penetration", 1000 * deepest, gaps)
+    near("slip_speed", fastest, slips)
+    near("an event's force_N", force, sim.fingers.index.force_N)
+    near("max_penetration_mm", sim.trace.max_penetration_mm, gaps)
+    near("phi", s:distance{ -0.4, 0, 0.3 }.phi, 0.3)
+    -- let fall from 2 mm
+    local high = cube("cube", 0) high.p[3] = 0.052
+    local fell = pg.open(pg.scene{ name = "high", object = high, environment = { table_body } })
+    near("moved_mm", fell:settle{ seconds = 0.5 }.moved_mm, 2, 0.02)
+    local turned = cube("cube", 0) turned.rpy_deg = { 0, 0, 30 }
+    local body = pg.open(pg.scene{ name = "turned", object = turned, environment = { table_body } }).object
+    near("rpy_deg", body.rpy_deg[3], 30) near("q", body.q[4], math.sin(math.pi / 12))
+  )"),
+            "true\n");
+}
+
 TEST(SessionBindingTest, ViewsCountAsTheScriptsMemory) {
   const TestFolder folder;
   ScriptConfig config = ConfigIn(folder);
