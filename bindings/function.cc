@@ -16,6 +16,12 @@ std::string ParameterName(const FunctionInfo& function, int number) {
   return name;
 }
 
+void ThrowNoSelf(lua_State* L, int index, const FunctionInfo& function,
+                 const std::string& class_name) {
+  throw InputError("", "", "a " + class_name + " before a colon (x:" + function.name + ")",
+                   DescribeValue(L, index));
+}
+
 void ThrowTooMany(const FunctionInfo& function, int got) {
   throw InputError("", "",
                    function.parameters.empty() ? "no arguments" : "(" + function.parameters + ")",

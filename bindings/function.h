@@ -87,11 +87,25 @@ namespace internal {
 std::string ParameterName(const FunctionInfo& function, int number);
 [[noreturn]] void ThrowTooMany(const FunctionInfo& function, int got);
 
+/// Throws for a method that got something else than its object: most often after a dot.
+[[noreturn]] void ThrowNoSelf(lua_State* L, int index, const FunctionInfo& function,
+                              const std::string& class_name);
+
+template <typename T>
+inline constexpr const ClassInfo* (*kClassOfShared)() = nullptr;
+template <typename T>
+inline constexpr const ClassInfo* (*kClassOfShared<std::shared_ptr<T>>)() =
+    [] { return &LuaClass<T>::info(); };
+
 /// Reads one C++ parameter, moving `index` past what it took.
 template <typename T>
 struct Parameter {
   using Stored = std::decay_t<T>;
   static Stored Read(lua_State* L, int& index, const FunctionInfo& function, int first) {
+    if (index < first && kClassOfShared<Stored> != nullptr &&
+        TestClass(L, index, *kClassOfShared<Stored>()) == nullptr) {
+      ThrowNoSelf(L, index, function, kClassOfShared<Stored>()->name);
+    }
     const std::string path = ParameterName(function, index - first + 1);
     return LuaValue<Stored>::Read(L, index++, path);
   }
@@ -107,9 +121,8 @@ struct Parameter<T&> {
     Stored object = FindObject<std::remove_const_t<T>>(L, index);
     if (!object) {
       const std::string name = LuaClass<std::remove_const_t<T>>::info().name;
-      const bool self = index < first;
-      throw InputError("", self ? "" : ParameterName(function, index - first + 1),
-                       "a " + name + (self ? " before a colon (x:" + function.name + ")" : ""),
+      if (index < first) ThrowNoSelf(L, index, function, name);
+      throw InputError("", ParameterName(function, index - first + 1), "a " + name,
                        DescribeValue(L, index));
     }
     ++index;

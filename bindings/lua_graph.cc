@@ -271,7 +271,8 @@ std::vector<int> GraphNeighbors(LuaGraph& graph, int id) {
 
 Pushed GraphPaths(lua_State* L, LuaGraph& graph, const PathsOptions& options) {
   if (!IsConnected(graph)) {
-    throw InputError("", "paths", "a graph that has been pruned", "one that has not");
+    throw InputError("", "", "a graph that has been pruned",
+                     "one that has not: call prune() first");
   }
   LuaPaths paths{{graph.session, graph.node, options.ToSettings()}};
   PlannerConfig config = graph.state()->config;

@@ -100,12 +100,34 @@ struct LuaValue<SceneArgument> {
 
 namespace {
 
+// A scene's file. Where there is none of that name, the error names the nearest of the folders
+// "scenes".
+fs::path FindScene(Machine& machine, const std::string& name) {
+  try {
+    return machine.files().FindForReading(name);
+  } catch (const InputError& error) {
+    if (error.got() != "nothing of that name") throw;
+    std::vector<std::string> stems;
+    for (const fs::path& folder : {fs::path("scenes"), DataFolder() / "scenes"}) {
+      std::error_code none;
+      for (const auto& entry : fs::directory_iterator(folder, none)) {
+        if (entry.path().extension() == ".lua") stems.push_back(entry.path().stem());
+      }
+    }
+    std::sort(stems.begin(), stems.end());
+    const std::string nearest = FindNearest(fs::path(name).stem().string(), stems);
+    if (nearest.empty()) throw;
+    throw InputError(error.where(), error.field(), error.expected(),
+                     error.got() + " (did you mean \"scenes/" + nearest + ".lua\"?)");
+  }
+}
+
 std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions& options) {
   const ScriptContext& context = ScriptContext::Of(L);
   Machine& machine = Machine::Of(L);
   Scene scene = std::move(argument.scene);
   if (argument.file) {
-    scene = LoadSceneFile(machine.files().FindForReading(*argument.file), options.settings);
+    scene = LoadSceneFile(FindScene(machine, *argument.file), options.settings);
   } else {
     FinishScene(scene, machine.script_folder(), options.settings);
   }
@@ -133,7 +155,7 @@ Pushed CheckArgument(lua_State* L, SceneArgument& argument) {
   Machine& machine = Machine::Of(L);
   std::vector<Setting> none;
   if (argument.file) {
-    return PushCheck(L, LoadSceneFile(machine.files().FindForReading(*argument.file), none));
+    return PushCheck(L, LoadSceneFile(FindScene(machine, *argument.file), none));
   }
   FinishScene(argument.scene, machine.script_folder(), none);
   return PushCheck(L, argument.scene);

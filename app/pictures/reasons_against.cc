@@ -310,8 +310,9 @@ Explanation ExplainMotionAgainst(const MotionFacts& motion, const MotionFacts& o
 }
 
 Explanation ExplainPathAgainstEnd(const Timeline& timeline, const Timeline::Node& end, int rank) {
-  const int winner = PathOfStep(end.facts);
-  const PathProgress own = FollowPath(timeline, rank), other = FollowPath(timeline, winner);
+  const int winner = PathOfStep(end.facts);  // -1 for a step of no path
+  const PathProgress own = FollowPath(timeline, rank),
+                     other = winner < 0 ? PathProgress() : FollowPath(timeline, winner);
   Explanation why;
   const auto add = [&](const char* name, const auto& value) {
     ReasonItem item{name, {}, {}, {}};
@@ -348,7 +349,8 @@ Explanation ExplainPathAgainstEnd(const Timeline& timeline, const Timeline::Node
   } else {
     why.text += fmt::format(". The end is {}, of no path", end.id());
   }
-  if (why.verdict != "worse") why.text += "; of those that come as far the first is taken";
+  if (own.furthest != nullptr && why.verdict != "worse")
+    why.text += "; of those that come as far the first is taken";
   return why;
 }
 

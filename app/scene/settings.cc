@@ -142,7 +142,10 @@ void RequireNoSettingsLeft(const std::vector<Setting>& settings,
   const std::string& key = settings.front().key;
   const std::string nearest = FindNearest(key, known);
   throw InputError(
-      kWhere, "", "a key that can be set",
+      kWhere, "",
+      nearest.empty() ? "a key that can be set, as object.mass or mppi.sigma (pregrasp info "
+                        "--settings lists the planner's)"
+                      : "a key that can be set",
       fmt::format("\"{}\"{}", key, nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
 }
 

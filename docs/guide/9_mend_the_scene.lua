@@ -32,4 +32,5 @@ for _, gap in ipairs { 0.005, 0.19 } do
   local grasps = attempt(gap)
   print(grasps:why())
   print("the first: " .. grasps[1]:why().text)
+  if grasps:best() then print("and not the best: " .. grasps[1]:why_not().text) end
 end

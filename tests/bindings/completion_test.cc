@@ -160,7 +160,7 @@ TEST_F(PromptTest, HelpExplainsAValueAFunctionAndAName) {
   const std::string settle = Output("help(s.settle)");
   EXPECT_EQ(settle.find("Session:settle(options) -> SettleResult\n  Lets the scene alone"), 0U)
       << settle;
-  EXPECT_NE(settle.find("    seconds?  number  1\n"), std::string::npos) << settle;
+  EXPECT_NE(settle.find("    seconds?  number  [s], 1\n"), std::string::npos) << settle;
   EXPECT_EQ(Output("help 'settle'"), settle);
   EXPECT_EQ(Output("help 'Session:settle'"), settle);
   EXPECT_NE(Output("help(s)").find("\n  :settle(options)  Lets the scene alone"),

@@ -523,6 +523,21 @@ TEST(SessionBindingTest, ViewsCountAsTheScriptsMemory) {
   }
 }
 
+TEST(SessionBindingTest, WhatIsOftenMistypedIsNamed) {
+  EXPECT_EQ(Failure("open().simulate{}"),
+            "simulate: expected a Session before a colon (x:simulate), got a table");
+  EXPECT_EQ(Failure("open():simulate().step(3)"),
+            "step: expected a Simulation before a colon (x:step), got 3");
+  EXPECT_EQ(Failure("pg.open 'rulr'"),
+            "open: rulr: expected a file, got nothing of that name (did you mean "
+            "\"scenes/ruler.lua\"?)");
+  EXPECT_EQ(Failure("pg.check 'no_such_thing'"),
+            "check: no_such_thing: expected a file, got nothing of that name");
+  EXPECT_EQ(Failure("open():plan{ set = { sigma = 0.3 } }"),
+            "plan: --set: expected a key that can be set, as object.mass or mppi.sigma (pregrasp "
+            "info --settings lists the planner's), got \"sigma\"");
+}
+
 TEST(SessionBindingTest, ANameWithAZeroByteIsRefused) {
   EXPECT_EQ(Script(R"(
     local s, refused = open(), 0
