@@ -1,5 +1,6 @@
 #include "app/geometry/cloud_flood.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -49,6 +50,15 @@ double CountDoubts(const SampledCloud& cloud, const std::vector<int>& sign) {
     }
   }
   return pairs == 0 ? 1.0 : static_cast<double>(doubts) / pairs;
+}
+
+// Whether the flood says so of most points that it tells something of. It may be wrong about the
+// inside of a vessel, which has less of the points than the outside.
+bool PointInward(const std::vector<int>& sign) {
+  constexpr double kMost = 0.67;
+  const auto inward = std::count(sign.begin(), sign.end(), -1);
+  const auto outward = std::count(sign.begin(), sign.end(), 1);
+  return static_cast<double>(inward) > kMost * static_cast<double>(inward + outward);
 }
 
 }  // namespace
@@ -127,7 +137,9 @@ CloudFlood OrientOutward(SampledCloud& cloud, bool has_normals) {
     best = std::move(flood);
     sign = std::move(now);
   }
-  if (!has_normals) {
+  if (has_normals) {
+    if (PointInward(sign)) cloud.N *= -1.0;
+  } else {
     Vote(cloud, sign);
     for (int i = 0; i < cloud.P.rows(); ++i) {
       if (sign[i] < 0) cloud.N.row(i) *= -1.0;

@@ -40,7 +40,8 @@ class CloudFlood {
 
 /// Turns the normals outward and returns the flood that told the way. It must stop at the surface,
 /// which takes a large radius, and get into hollows, which takes a small one: of several the one is
-/// taken after which neighbours agree best. Normals that came with the points stay as they are.
+/// taken after which neighbours agree best. Normals that came with the points are turned all
+/// together or stay as they are: they know hollows that no flood gets into.
 CloudFlood OrientOutward(SampledCloud& cloud, bool has_normals);
 
 }  // namespace pregrasp

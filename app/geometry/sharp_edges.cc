@@ -10,7 +10,11 @@ namespace pregrasp {
 namespace {
 
 constexpr double kRimStep = kPi / 36.0;  // [rad], of a rim's turn
-constexpr double kSameNormal = 1e-6;     // [rad], nearer ones count once
+constexpr double kSameNormal = 1e-6;     // [rad], nearer ones count once, or as opposite
+
+bool AreOpposite(const Vector3& nhat, const Vector3& other) {
+  return (nhat + other).norm() < kSameNormal;
+}
 
 class Finder {
  public:
@@ -98,15 +102,28 @@ class Finder {
         if (nhats[f].isZero(0.0) || nhats[g].isZero(0.0)) continue;
         const int v = mesh.F(f, i), w = mesh.F(f, (i + 1) % 3);
         const Vector3 a = mesh.V.row(v), b = mesh.V.row(w);
-        if (nhats[f].cross(nhats[g]).dot(b - a) < 0.0) continue;  // hollow
+        const bool folded = AreOpposite(nhats[f], nhats[g]);
+        if (!folded && nhats[f].cross(nhats[g]).dot(b - a) < 0.0) continue;  // hollow
         first_face[v] = f;
-        if (f < g) AddAlong(a, b, {a, {nhats[f], nhats[g]}});
+        if (f > g) continue;
+        if (folded) {  // a sheet's rim: the arc leads around by way of where the sheet ends
+          const Vector3 away = (b - a).cross(nhats[f]).normalized();
+          AddAlong(a, b, {a, {nhats[f], away}});
+          AddAlong(a, b, {a, {away, nhats[g]}});
+        } else {
+          AddAlong(a, b, {a, {nhats[f], nhats[g]}});
+        }
       }
     }
     for (int v = 0; v < mesh.V.rows(); ++v) {
       if (first_face[v] < 0) continue;
       EdgePoint point{mesh.V.row(v), CollectNormals(mesh, neighbours, nhats, v, first_face[v])};
-      if (point.nhats_B.size() > 1) points_.push_back(std::move(point));
+      std::vector<Vector3>& around = point.nhats_B;
+      if (around.size() < 2) continue;
+      if (around.size() == 2 && AreOpposite(around[0], around[1])) {
+        around.insert(around.begin() + 1, around[0].unitOrthogonal());  // which way is not told
+      }
+      points_.push_back(std::move(point));
     }
   }
 

@@ -40,13 +40,33 @@ class Arc {
   double width_ = 0.0;
 };
 
-// A spherical polygon as triangles around a direction inside it.
-std::vector<std::array<Vector3, 3>> DivideFan(const Normals& nhats) {
-  if (nhats.size() == 3) return {{nhats[0], nhats[1], nhats[2]}};
+using SphereTriangle = std::array<Vector3, 3>;
+
+std::vector<SphereTriangle> DivideSphere() {
+  std::vector<SphereTriangle> octants;
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      for (const double z : {-1.0, 1.0}) {
+        octants.push_back({x * Vector3::UnitX(), y * Vector3::UnitY(), z * Vector3::UnitZ()});
+      }
+    }
+  }
+  return octants;
+}
+
+// A spherical polygon as triangles around a direction inside it. A polygon that is not well within
+// a half sphere, around the tip of a spike or where a mesh is folded, has no such direction: then
+// all directions, of which those that do not belong to the fan miss it.
+std::vector<SphereTriangle> DivideFan(const Normals& nhats) {
+  constexpr double kLeastCosine = 0.05;
   Vector3 middle = Vector3::Zero();
   for (const Vector3& nhat : nhats) middle += nhat;
   middle.normalize();
-  std::vector<std::array<Vector3, 3>> triangles;
+  for (const Vector3& nhat : nhats) {
+    if (nhat.dot(middle) < kLeastCosine) return DivideSphere();
+  }
+  if (nhats.size() == 3) return {{nhats[0], nhats[1], nhats[2]}};
+  std::vector<SphereTriangle> triangles;
   for (std::size_t i = 0; i < nhats.size(); ++i) {
     triangles.push_back({middle, nhats[i], nhats[(i + 1) % nhats.size()]});
   }
@@ -110,7 +130,7 @@ void CoverArc(const TipAround& tip, const Arc& arc, double low, double high, Nor
   found.push_back(arc.At(high));
 }
 
-void CoverTriangle(const TipAround& tip, const std::array<Vector3, 3>& corners, double leaf,
+void CoverTriangle(const TipAround& tip, const SphereTriangle& corners, double leaf,
                    Normals& found) {
   const Vector3 middle = (corners[0] + corners[1] + corners[2]).normalized();
   double reach = 0.0, longest = 0.0;
@@ -163,8 +183,7 @@ void CollectFreeOnArc(const TipAround& tip, const Arc& arc, Normals& found) {
   }
 }
 
-void CollectFreeInTriangle(const TipAround& tip, const std::array<Vector3, 3>& corners,
-                           Normals& found) {
+void CollectFreeInTriangle(const TipAround& tip, const SphereTriangle& corners, Normals& found) {
   double longest = 0.0;
   for (int i = 0; i < 3; ++i) {
     longest = std::max(longest, AngleBetween(corners[i], corners[(i + 1) % 3]));
@@ -209,7 +228,7 @@ std::vector<GraspContact> FindOuterEdgeContacts(const GraspWorld& world,
       const Arc arc(point.nhats_B[0], point.nhats_B[1]);
       CoverArc(tip, arc, 0.0, arc.width(), nhats[i]);
     } else {
-      for (const std::array<Vector3, 3>& triangle : DivideFan(point.nhats_B)) {
+      for (const SphereTriangle& triangle : DivideFan(point.nhats_B)) {
         CoverTriangle(tip, triangle, leaf, nhats[i]);
       }
     }
@@ -230,7 +249,7 @@ std::vector<GraspContact> FindFreeEdgeContacts(const GraspWorld& world,
       CollectFreeOnArc(tip, Arc(point.nhats_B[0], point.nhats_B[1]), nhats[i]);
       continue;
     }
-    for (const std::array<Vector3, 3>& triangle : DivideFan(point.nhats_B)) {
+    for (const SphereTriangle& triangle : DivideFan(point.nhats_B)) {
       CollectFreeInTriangle(tip, triangle, nhats[i]);
     }
     DropRepeated(nhats[i]);

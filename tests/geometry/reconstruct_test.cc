@@ -139,6 +139,19 @@ TEST(ReconstructTest, NormalsThatPointToEitherSideAreNotBelieved) {
   }
 }
 
+// As scanners leave them that look from inside the frame that they think in.
+TEST(ReconstructTest, NormalsThatAllPointInwardAreTurned) {
+  const Shape box = Box{Vector3(0.1, 0.06, 0.04)};
+  const Shape cup = MakeMesh(testing::MakeCup(0.04, 0.1, 0.006, 64));
+  for (const Shape& shape : {box, cup}) {
+    const PointCloud cloud = SampleByChance(shape, 8000, 0.0, Rng(3));
+    const Reconstruction outward = ReconstructSurface(cloud.P, cloud.N);
+    const Reconstruction inward = ReconstructSurface(cloud.P, -cloud.N);
+    EXPECT_EQ(inward.mesh.V, outward.mesh.V);
+    EXPECT_NEAR(CalcVolume(inward.mesh), CalcVolume(shape), 0.04 * CalcVolume(shape));
+  }
+}
+
 TEST(ReconstructTest, ReachesNoFartherOutThanThePointsWhereTheyLieFlat) {
   // A body must stand on the plane of its lowest points, not on spikes at its corners.
   for (int seed = 0; seed < 5; ++seed) {

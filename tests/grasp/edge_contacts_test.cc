@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/core/rng.h"
+#include "app/geometry/tessellate.h"
 #include "tests/grasp/grasp_scenes.h"
 
 namespace pregrasp {
@@ -112,6 +113,53 @@ TEST(EdgeContactsTest, AnEdgeThatLiesOnAFaceOfAnotherPartIsNone) {
     EXPECT_GT(std::abs(contact.nhat_O.z()), std::cos(DegToRad(3.0)));
   }
   EXPECT_GT(on_seam, 0);
+}
+
+// A box whose top is a fan to a point beside the triangle that it stands for: three layers there,
+// the middle one upside down, as reconstructed surfaces have them.
+TEST(EdgeContactsTest, AFoldedMeshGivesContactsAsAnyOther) {
+  Mesh folded;
+  folded.file = "folded.obj";
+  TriangleMesh& mesh = folded.mesh;
+  mesh = Tessellate(Box{{0.08, 0.06, 0.04}});
+  const auto rows = mesh.V.rows();
+  mesh.V.conservativeResize(rows + 1, 3);
+  for (int f = 0; f < mesh.F.rows(); ++f) {
+    const Eigen::RowVector3i corners = mesh.F.row(f);
+    double lowest = 1.0;
+    for (const int v : corners) lowest = std::min(lowest, mesh.V(v, 2));
+    if (lowest < 0.02) continue;
+    mesh.V.row(rows) = Vector3(0.011, 0.013, 0.02);  // beyond the diagonal of one of the two
+    const auto sign = [&](const Vector3& a, const Vector3& b) {
+      return (b - a).cross(mesh.V.row(rows).transpose() - a).z();
+    };
+    bool outside = false;
+    for (int i = 0; i < 3; ++i) {
+      outside |= sign(mesh.V.row(corners[i]), mesh.V.row(corners[(i + 1) % 3])) < 0.0;
+    }
+    if (!outside) continue;
+    const int at = static_cast<int>(rows);
+    mesh.F.conservativeResize(mesh.F.rows() + 2, 3);
+    mesh.F.row(f) << corners[0], corners[1], at;
+    mesh.F.row(mesh.F.rows() - 2) << corners[1], corners[2], at;
+    mesh.F.row(mesh.F.rows() - 1) << corners[2], corners[0], at;
+    break;
+  }
+  ASSERT_EQ(mesh.F.rows(), 14);
+  Scene scene = MakeScene("folded", Box{{0.08, 0.06, 0.04}}, 0.1, Shift(0, 0, 0.5));
+  scene.bodies[0].shape = folded;
+  scene.bodies.push_back(FixedBox("far", {0.1, 0.1, 0.1}, {0, 0, -1}));
+  int at_corners = 0;
+  const auto look = [&](const std::vector<GraspContact>& contacts) {
+    for (const GraspContact& contact : contacts) {
+      ASSERT_NEAR(contact.nhat_O.norm(), 1.0, 1e-9);
+      at_corners += std::abs(contact.p_OC.x()) > 0.0399 && std::abs(contact.p_OC.y()) > 0.0299;
+    }
+  };
+  look(Outer(scene));
+  const GraspWorld world(scene, ShadowHand());
+  look(FindFreeEdgeContacts(world, EdgesOf(scene), kRadius, kSlack, world.StartPoses()));
+  EXPECT_GT(at_corners, 8);
 }
 
 TEST(EdgeContactsTest, MoreRoomGivesAWiderFan) {
