@@ -1,9 +1,10 @@
 // Random calls on random objects, some from coroutines, from predicates and through weak tables:
-// each gives a result or one line. 2,000 calls; PREGRASP_FUZZ_CALLS asks for more (test.sh
-// --sanitize: 20,000).
+// each gives a result or one line. 2,000 calls of four seeds together; PREGRASP_FUZZ_CALLS asks for
+// more (test.sh --sanitize: 20,000).
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
 #include <sstream>
 #include <string>
 
@@ -41,6 +42,7 @@ local fingers = { "thumb", "index", "middle", "ring", "little" }
 local function point() return { random() * 0.1 - 0.05, random() * 0.1 - 0.05, random() * 0.1 } end
 local step  -- one random call, defined below
 local function open()
+  if random(3) == 1 then return pg.open("scenes/ruler.lua", { seed = random(100) }) end
   return pg.open(pg.scene{ name = "cube",
     object = { shape = pg.box{0.065, 0.065, 0.065}, mass = 0.05, friction = 0.6, p = {0, 0, 0.3325} },
     environment = { { name = "post", shape = pg.box{0.03, 0.03, 0.3}, p = {0, 0, 0.15}, friction = 0.6 } } },
@@ -55,19 +57,41 @@ local function predicate()
     return left < 0
   end
 end
-local small = { quality = "draft", size = {64, 48} }
+local saved, finished = {}, {}  -- directories that load_state and load can read
+local function shot() return { file = "out/x.png", quality = "draft", size = {64, 48} } end
+local cheap = { ["mesh.triangles"] = 12, ["graph.samples"] = 1, ["cloud.points"] = 128, ["graph.top_percent"] = 20, ["screen.samples"] = 4,
+  ["screen.iterations"] = 1, ["screen.rounds"] = 1, ["mppi.samples"] = 4, ["mppi.iterations"] = 2, ["certify.hold_seconds"] = 0.05,
+  ["grasps.samples"] = 1, ["grasps.draws"] = 1, ["grasps.points"] = 100, ["grasps.pairs"] = 100, ["grasps.max_solves"] = 1, ["grasps.max_probes"] = 100,
+  ["grasps.search_sets"] = 0, ["grasps.starts"] = 1 }
+local steps = { "scene.start", "scene.verdict", "graph.mesh", "graph.score", "graph.prune.3", "paths.rank.1", "path.1.screen.1", "path.1.mppi.1",
+  "path.1.certify", "path.1.grasp.1", "sim.1", "sim.3" }
+local function plan()
+  local set = {} for key, value in pairs(cheap) do set[key] = value end
+  set["screen.paths"] = random(2) set["mppi.iterations"] = random(3)
+  return { paths = random(2), plans = 1, motions = 1, all = random(2) == 1, set = set }
+end
+local module = {
+  compare = function() return (any()), (any()) end,
+  load_state = function() return pick(saved) end, load = function() return pick(finished) end,
+  wrench = function() return { p = { point(), point() }, n = { {1, 0, 0}, {-1, 0, 0} }, mu = random(), mass = 0.1 * random() } end,
+  ik = function() return { contacts = { thumb = { p = point(), n = {1, 0, 0} }, index = { p = point(), n = {-1, 0, 0} } }, seed = random(9) } end,
+  check = function() return "scenes/ruler.lua" end, box = function() return point() end, sphere = function() return { r = random() } end,
+}
 local good = {
   Session = {
-    simulate = function() return { trace = random(2) == 1 } end, body = function() return "object" end,
+    simulate = function() return { trace = random(2) == 1 } end, body = function(s) return pick(s.bodies) end,
     distance = point, cloud = function() return { points = 64 } end, mesh = function() return { triangles = 12 } end,
     graph = function() return { triangles = 12, samples = 1, points = 128 } end,
     break_when = function() if random(2) == 1 then return predicate() end end,
     settle = function() return { seconds = 0.02 } end,
-    shot = function() return { file = "out/x.png", quality = small.quality, size = small.size } end,
-    save = function() return "out/run" .. random(3) end, save_state = function() return "out/state" .. random(2) end,
-    go = function() return pick{ "scene.start", "graph.score", "graph.prune.3", "paths.rank.1", "path.1.mppi.1", "sim.1", "sim.3" } end,
-    step = function() return pick{ "scene.start", "graph.mesh", "sim.2" } end, why = function() end, check = function() end,
-    what_if = function() return { set = { ["object.mass"] = 0.04 + 0.02 * random() } } end, plan = function() return { paths = 1 } end, record = function() return { dir = "out/rec" .. random(2), pictures = "none" } end,
+    shot = shot, save = function() return "out/run" .. random(3) end, verdict = function() end,
+    save_state = function(s)
+      local dir = "out/state" .. random(3)
+      if random(2) == 1 then return dir end
+      return dir, s
+    end,
+    go = function() return pick(steps) end, step = function() return pick(steps) end, why = function() end, check = function() end,
+    what_if = function() return { set = { ["object.mass"] = 0.04 + 0.02 * random() } } end, plan = plan, record = function() return { dir = "out/rec" .. random(2), pictures = "none" } end,
   },
   Simulation = {
     touch = function() return { finger = pick(fingers), p_OC = point() } end,
@@ -75,32 +99,38 @@ local good = {
     lift = function() return { finger = pick(fingers) } end, wait = function() return { seconds = 0.02 } end,
     step = function() return random(6) end, back = function() return random(0, 3) end, fork = function() end,
     forward = function() return random(0, 3) end, what_if = function() return { set = { ["fingertips.friction"] = random() } } end,
-    body = function() return "post" end,
+    body = function() return pick{ "post", "ruler", "cube" } end, shot = shot,
   },
   Graph = {
     score = function() end, prune = function() return { top_percent = 20 } end, prune_step = function() end,
     why = function() return random(0, 143) end, node = function() return random(0, 143) end, top = function() return random(5) end,
     triangles = function() return { finger = pick(fingers), count = random(3) } end, forward = function() return random(0, 1) end,
     path = function() return { random(0, 143), { thumb = random(0, 11), index = random(0, 12) } } end,
-    what_if = function() return { set = { ["environment.post.p"] = { 0, 0, 0.15 } } } end,
+    what_if = function() return { set = { ["object.friction"] = 0.3 + 0.2 * random() } } end,
     neighbors = function() return random(0, 143) end,
     paths = function() return { stages = random(2), filter = random(2) == 1 and predicate() or nil } end,
-    back = function() return random(0, 1) end, fork = function() end,
+    back = function() return random(0, 1) end, fork = function() end, why_not = function() return random(0, 143) end, shot = shot,
   },
   Paths = { next = function() end, top = function() return random(3) end, why = function() return random(3) end },
-  Path = { why = function() end, why_not = function() return (any()) end, optimize = function() return { samples = 4, iterations = 1 } end },
+  Path = { why = function() end, shot = shot, why_not = function() return pool.Path and pick(pool.Path) or any() end, optimize = function() return { samples = 4, iterations = 1 } end },
   Optimizer = { step = function() end, back = function() return random(0, 1) end, fork = function() return {} end,
     rollouts = function() end, elite = function() return random(5) end, rollout = function() return random(5) end,
     trace = function() return random(5) end, why = function() return random(5) end, why_not = function() return random(5) end,
     run = function() return 1 end, set = function() return { sigma = random() } end, set_nominal = function() return random(0, 5) end,
-    forward = function() return random(0, 1) end, certify = function() return { hold_seconds = 0.05 } end },
-  Trajectory = { why = function() end, why_not = function() return (any()) end, trace = function() return random(0, 50) end, body = function() return "object" end,
+    forward = function() return random(0, 1) end, certify = function() return { hold_seconds = 0.05 } end,
+    screen = function() return { samples = 4, iterations = 1 } end, shot = shot },
+  Trajectory = { why = function() end, why_not = function() return (any()) end, trace = function() return random(0, 50) end,
+    body = function() return pick{ "cube", "ruler", "object" } end, shot = shot,
     grasps = function() return { samples = 1, points = 100, pairs = 100, max_solves = 1, starts = 1, search_sets = 0 } end },
   Grasps = { all = function() end, best = function() end, why = function() end },
-  Grasp = { motion = function() return {} end, why = function() end, why_not = function() return (any()) end },
-  Motion = { back = function() return 0 end, forward = function() return 0 end, why = function() end, why_not = function() return (any()) end },
-  Plan = { why = function() end, why_not = function() return random(3) end, back = function() return 0 end, forward = function() return random(0, 1) end },
-  Frame = { why = function() end, why_not = function() return (any()) end }, Array = { table = function() end }, Reason = {}, Shape = {}, Scene = {},
+  Grasp = { motion = function() return {} end, why = function() end, why_not = function() return (any()) end, shot = shot },
+  Motion = { back = function() return 0 end, forward = function() return 0 end, why = function() end, why_not = function() return (any()) end,
+    step = function() end, shot = shot },
+  Plan = { step = function() return random(4) end, run = function() return random(4) > 1 and pick(steps) or nil end, next_stage = function() end,
+    why = function() end, why_not = function() return random(3) end, back = function() return random(0, 3) end,
+    forward = function() return random(0, 3) end, object = function() end, save = function() return "out/run" .. random(3) end },
+  Frame = { why = function() end, why_not = function() return (any()) end, shot = shot }, Array = { table = function() end },
+  Run = { step = function() return pick(steps) end }, Reason = {}, Shape = {}, Scene = {},
 }
 local fields = { "t", "num_steps", "object", "fingers", "contacts", "trace", "step_id", "name", "bodies", "stage", "kept",
   "best_cost", "certified", "reasons", "count", "reason", "text", "node", "rank", "score", "terms", 1, 2, -1, "nothing", "iteration" }
@@ -113,21 +143,42 @@ local function junk(depth)
   elseif n == 11 and depth < 3 then return { [pick(fingers)] = junk(depth + 1), seconds = junk(depth + 1) } end
   return random()
 end
-local costly = { what_if = 0.1, save_state = 0.05, trace = 0.2, check = 0.2, plan = 0.1, graph = 0.1, certify = 0.1, grasps = 0.1, optimize = 0.3, save = 0.05, record = 0.05, shot = 0.05, motion = 0.1 }
+local costly = { what_if = 0.4, save_state = 0.2, trace = 0.2, check = 0.2, plan = 0.3, graph = 0.4, certify = 0.3, grasps = 0.4, optimize = 0.5,
+  save = 0.1, record = 0.05, shot = 0.05, motion = 0.1, verdict = 0.1, load_state = 0.5, load = 0.3, run = 0.4 }
 local calls, passed, depth = 0, 0, 0
+local tried, done = {}, {}  -- calls with good arguments, and those of them that gave a result, by Class:method
+local function count_good(name, ok, ...)
+  tried[name] = (tried[name] or 0) + 1
+  if ok then done[name] = (done[name] or 0) + 1 end
+  return ok, ...
+end
+local function call_module(name)
+  if random() > (costly[name] or 1) then calls = calls - 1 return nil end
+  if name:match("^load") and #(name == "load" and finished or saved) == 0 then calls = calls - 1 return nil end
+  local arguments = table.pack(module[name]())
+  return count_good(name, pcall(function() return pg[name](table.unpack(arguments, 1, arguments.n)) end))
+end
 local function call()
   local x, kind = any()
   if random(40) == 1 then return pcall(function() return x[pick(fields)] end) end
   local methods = good[kind]
   local names = {} for name in pairs(methods or {}) do names[#names + 1] = name end
+  if random(12) == 1 then
+    names = {} for name in pairs(module) do names[#names + 1] = name end
+    return call_module(pick(names))
+  end
   if #names == 0 or random(40) == 1 then return pcall(pg[pick{ "box", "union", "wrench", "ik", "scene", "open", "compare", "check", "load_state" }], junk(1), junk(1)) end
   local name = pick(names)
   if random() > (costly[name] or 1) then calls = calls - 1 return nil end
-  local argument
-  if random(20) > 1 then argument = methods[name]() else argument = junk(1) end
-  if type(argument) == "table" and random(12) == 1 then argument[next(argument) or 1] = junk(1) end
-  if argument == nil then return pcall(function() return x[name](x) end) end
-  return pcall(function() return x[name](x, argument) end)
+  local arguments, good_one = table.pack(methods[name](x)), true
+  if random(20) == 1 then arguments, good_one = { junk(1), n = 1 }, false end
+  local argument = arguments[1]
+  if type(argument) == "table" and random(12) == 1 then good_one, argument[next(argument) or 1] = false, junk(1) end
+  local results = table.pack(pcall(function() return x[name](x, table.unpack(arguments, 1, arguments.n)) end))
+  if not good_one then return table.unpack(results, 1, results.n) end
+  if results[1] and name == "save_state" then saved[#saved + 1] = argument end
+  if results[1] and name == "save" then finished[#finished + 1] = argument end
+  return count_good(kind .. ":" .. name, table.unpack(results, 1, results.n))
 end
 function step(nested)
   if depth > 3 then return end
@@ -155,28 +206,49 @@ while calls < count do
   step(false)
 end
 print(calls, passed)
+local names = {} for name in pairs(tried) do names[#names + 1] = name end
+for _, name in ipairs(names) do print(name, tried[name], done[name] or 0) end
 )";
 
-TEST(FuzzCallsTest, RandomCallsGiveResultsOrOneLine) {
+class FuzzCallsTest : public testing::TestWithParam<int> {};
+constexpr int kFuzzSeeds = 4;
+
+TEST_P(FuzzCallsTest, RandomCallsGiveResultsOrOneLine) {
   const TestFolder folder, weights;
   WriteRandomWeights(weights.path());
   const char* asked = std::getenv("PREGRASP_FUZZ_CALLS");
-  const std::string count = asked == nullptr ? "2000" : asked;
+  const long count = (asked == nullptr ? 2000 : std::stol(asked)) / kFuzzSeeds;
   ScriptConfig config;
   config.output = folder.path() / "out";
   config.weights = weights.path();
   config.threads = 1;
   config.machine.seconds = 600.0;
+  config.machine.seed = GetParam();
   CaptureStdout();
-  const auto run = [&] { RunScript(folder.Write("fuzz.lua", kFuzz), {count}, config); };
+  const auto run = [&] {
+    RunScript(folder.Write("fuzz.lua", kFuzz), {std::to_string(count)}, config);
+  };
   EXPECT_NO_THROW(run());
   std::istringstream out(GetCapturedStdout());
   long calls = 0, passed = 0;
   out >> calls >> passed;
   EXPECT_FALSE(out.fail()) << out.str();
-  EXPECT_GE(calls, std::stol(count));
+  EXPECT_GE(calls, count);
   EXPECT_GE(3 * passed, calls) << "most calls fail at their arguments";
+  constexpr long kEnoughForAll = 5000;
+  if (count < kEnoughForAll) return;
+  std::map<std::string, int> done;
+  std::string name;
+  for (int tried = 0, good = 0; out >> name >> tried >> good;) done[name] = good;
+  for (const char* must :
+       {"Plan:step", "Plan:run", "Plan:next_stage", "Plan:back", "Plan:forward", "Plan:object",
+        "Session:plan", "Session:go", "Session:save_state", "Session:what_if", "Graph:what_if",
+        "Simulation:what_if", "Simulation:forward", "compare", "load", "load_state"}) {
+    EXPECT_GE(done[must], 1) << must << " never gave a result";
+  }
 }
+
+INSTANTIATE_TEST_SUITE_P(Seeds, FuzzCallsTest, testing::Range(1, 1 + kFuzzSeeds));
 
 }  // namespace
 }  // namespace pregrasp
