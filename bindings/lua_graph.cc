@@ -21,7 +21,6 @@ const Schema kTriangleScore{
     {"triangle", "finger", "best", "mean", "node", "kept", "fits", "p_OCentre", "nhat_O", "area"}};
 const Schema kSibling{"Sibling", {"nodes", "score", "behind"}};
 
-constexpr int kGraphKib = 300;
 constexpr int kMostPaths = 100000;  // that top(n) lists
 constexpr int kSiblings = 5;
 
@@ -134,7 +133,7 @@ namespace {
 
 void GraphScore(lua_State* L, LuaGraph& graph) {
   graph.Do(Verb::kScore);
-  CountMemory(L, kGraphKib);
+  CountSteps(L, *graph.session);
 }
 
 bool IsConnected(const LuaGraph& graph) { return graph.graph()->stage() == GraphStage::kConnected; }
@@ -146,7 +145,7 @@ bool GraphPruneStep(lua_State* L, LuaGraph& graph, const std::optional<int>& nod
   }
   if (IsConnected(graph)) return false;
   graph.Do(Verb::kPrune, nodes ? nlohmann::json{{"nodes", *nodes}} : nlohmann::json::object());
-  CountMemory(L, kGraphKib);
+  CountSteps(L, *graph.session);
   return true;
 }
 
@@ -160,7 +159,7 @@ void GraphPrune(lua_State* L, LuaGraph& graph, const PruneOptions& options) {
     }
   }
   graph.node = &PruneAll(graph.session->timeline(), *graph.node, std::move(command));
-  CountMemory(L, 3 * kGraphKib);
+  CountSteps(L, *graph.session);
 }
 
 void GraphBack(LuaGraph& graph, const std::optional<int>& steps) {
@@ -282,7 +281,6 @@ Pushed GraphPaths(lua_State* L, LuaGraph& graph, const PathsOptions& options) {
   paths.stages = config.stages;
   graph.state()->paths->Count(paths.order, paths.stages);  // refuses what cannot be
   PushObject(L, std::make_shared<LuaPaths>(std::move(paths)));
-  CountMemory(L, 2 * kGraphKib);
   return {1};
 }
 
@@ -546,10 +544,9 @@ void LuaPath::Record() {
 
 Pushed SessionGraph(lua_State* L, const std::shared_ptr<Session>& session,
                     const GraphOptions& options) {
-  constexpr int kPlanningKib = 20000;
-  CountMemory(L, kPlanningKib);
   LuaGraph graph{{session, &session->start(), options.ToSettings()}};
   graph.Do(Verb::kMesh);
+  CountSteps(L, *session);
   graph.first = graph.node;
   PushObject(L, std::make_shared<LuaGraph>(std::move(graph)));
   return {1};

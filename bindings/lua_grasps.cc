@@ -11,8 +11,6 @@ const Schema kLift{"Lift",
                     "direction_W", "pushes", "soft", "stiff", "forearm_free", "not_converged",
                     "unresolved_mm", "neighbours", "step_id"}};
 
-constexpr int kGraspKib = 20;
-
 // All grasps of a trajectory.
 
 Pushed GraspsAll(lua_State* L, LuaGrasps& grasps) {
@@ -212,7 +210,7 @@ Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOpt
     if (StopsAt(L, session, *grasp->step)) break;
     if (grasp->lift != nullptr && StopsAt(L, session, *grasp->lift)) break;
   }
-  CountMemory(L, kGraspKib * static_cast<int>(grasps->grasps.size()));
+  CountSteps(L, *session);
   PushObject(L, std::move(grasps));
   return {1};
 }

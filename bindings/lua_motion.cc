@@ -15,8 +15,6 @@ const Schema kMotionSummary{
     {"frames", "failed", "blocked_ways", "loosened", "max_tip_error_mm", "min_clearance_mm",
      "max_joint_speed", "max_wrist_speed", "forearm_free", "over_limits"}};
 
-constexpr int kMotionKib = 100;
-
 bool IsFinished(const LuaMotion& motion) {
   const auto state = motion.begun();
   return state && state->motion_state->finished;
@@ -34,7 +32,7 @@ bool SolveNext(lua_State* L, LuaMotion& motion) {
     return false;
   }
   motion.SolveKeyframe();
-  CountMemory(L, kMotionKib);
+  CountSteps(L, *motion.session);
   return true;
 }
 
@@ -43,7 +41,7 @@ void FinishMotion(lua_State* L, LuaMotion& motion) {
   if (IsFinished(motion)) return;
   while (SolveNext(L, motion)) ThrowIfInterrupted();
   motion.node = &pregrasp::FinishMotion(motion.session->timeline(), *motion.node);
-  CountMemory(L, kMotionKib);
+  CountSteps(L, *motion.session);
 }
 
 void PushFrame(lua_State* L, const LuaMotion& motion, const Timeline::Node* node) {
@@ -281,7 +279,6 @@ Pushed GraspMotion(lua_State* L, LuaGrasp& grasp, const MotionOptions& options) 
                     LuaMotion{{grasp.all.session, grasp.all.node, options.ToSettings()},
                               grasp.all.node,
                               grasp.entry()}));
-  CountMemory(L, kMotionKib);
   return {1};
 }
 

@@ -11,8 +11,6 @@ namespace {
 
 const Schema kPlanOptions{"RunOptions", {"paths", "all", "plans", "motions", "set"}};
 
-constexpr int kPlannedStepKib = 30;
-
 }  // namespace
 
 PlanOptions LuaValue<PlanOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
@@ -45,14 +43,12 @@ bool TakeSteps(lua_State* L, LuaPlan& plan, int steps,
                const std::function<bool(const RunPlace&)>& until) {
   Timeline& timeline = plan.session->timeline();
   const int before = plan.place.steps;
-  const std::size_t nodes = timeline.nodes().size();
   bool stopped = false;
   RunPlace reached = plan.place;
   const auto finish = [&] {
     plan.place = reached;
     plan.ahead = std::max(plan.ahead, plan.place.steps);
-    const auto made = static_cast<int>(timeline.nodes().size() - nodes);
-    if (made > 0) CountMemory(L, *plan.session, kPlannedStepKib * made);
+    CountSteps(L, *plan.session);
   };
   try {
     reached = TakeRunSteps(timeline, plan.config, steps, [&](const RunPlace& place) {
@@ -200,8 +196,6 @@ int PlanToString(lua_State* L) {
 
 Pushed SessionPlan(lua_State* L, const std::shared_ptr<Session>& session,
                    const PlanOptions& options) {
-  constexpr int kPlanningKib = 20000;
-  CountMemory(L, kPlanningKib);
   PushObject(L, std::make_shared<LuaPlan>(LuaPlan{session, options.config, {}, 0}));
   return {1};
 }

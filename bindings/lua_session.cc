@@ -137,10 +137,15 @@ int FindBody(const Scene& scene, const std::string& name) {
 
 void CountMemory(lua_State* L, int kibibytes) { lua_gc(L, LUA_GCSTEP, kibibytes); }
 
-void CountMemory(lua_State* L, Session& session, int kibibytes) {
-  CountMemory(L, kibibytes);
-  Machine::Of(L).RequireMemory(L, static_cast<std::size_t>(kibibytes) << 10U);
-  session.claim().Grow(static_cast<std::size_t>(kibibytes) << 10U);
+void CountSteps(lua_State* L, Session& session) {
+  MemoryClaim& claim = session.steps_claim();
+  const std::size_t before = claim.bytes(), now = session.timeline().held_bytes();
+  if (now == before) return;
+  claim = MemoryClaim();
+  claim = MemoryClaim(Machine::Of(L).outside(), now);
+  if (now < before) return;
+  CountMemory(L, static_cast<int>((now - before) >> 10U));
+  Machine::Of(L).RequireMemory(L, 0);
 }
 
 namespace {
@@ -207,6 +212,7 @@ namespace {
 
 Pushed SessionSettle(lua_State* L, Session& session, const SettleOptions& options) {
   const auto& result = std::get<SettleFacts>(session.Settle(options.seconds).facts.details);
+  CountSteps(L, session);
   RecordWriter(L, kSettleResult)
       .Set("moved_mm", result.moved_mm)
       .Set("rotated_deg", result.rotated_deg)
@@ -221,6 +227,7 @@ Pushed SessionSettle(lua_State* L, Session& session, const SettleOptions& option
 Pushed SessionVerdict(lua_State* L, Session& session) {
   const Timeline::Node& node = session.timeline().Do(session.timeline().root(), Verb::kVerdict);
   const auto& verdict = std::get<VerdictFacts>(node.facts.details);
+  CountSteps(L, session);
   RecordWriter(L, kVerdict)
       .Set("verdict", verdict.verdict)
       .Set("mu", verdict.mu)

@@ -103,6 +103,9 @@ void CountMemory(lua_State* L, int kibibytes);
 /// The same for what the session holds until it ends: it counts toward the script's memory.
 /// @throws std::bad_alloc beyond the script's cap.
 void CountMemory(lua_State* L, Session& session, int kibibytes);
+/// Counts what the session's timeline holds now, in place of what it held when this was last
+/// called. For whatever does steps of the planner. @throws std::bad_alloc beyond the script's cap.
+void CountSteps(lua_State* L, Session& session);
 
 /// What check says of a scene.
 Pushed PushCheck(lua_State* L, const Scene& scene);

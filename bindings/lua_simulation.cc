@@ -79,22 +79,12 @@ struct LuaValue<WaitOptions> {
 
 namespace {
 
-constexpr int kKibPerStep = 3;
-
-// Counts the physics steps that a new node of the timeline holds; one that was known holds no more.
-void CountSteps(lua_State* L, LuaSimulation& sim, std::size_t nodes_before, int states_before) {
-  if (sim.session->timeline().nodes().size() == nodes_before) return;
-  CountMemory(L, *sim.session, kKibPerStep * (sim.simulation()->num_states() - states_before));
-}
-
-// Does an action, ended where break_when says, and moves on. Tells Lua's collector what the past
-// has grown by.
+// Does an action, ended where break_when says, and moves on.
 // @returns whether break_when stopped it.
 bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
   Timeline& timeline = sim.session->timeline();
   if (sim.traced && !timeline.GetState(*sim.node)->simulation) options["trace"] = true;
   const int before = sim.simulation()->num_states();
-  const std::size_t nodes = timeline.nodes().size();
   bool stopped = false;
   sim.ahead = nullptr;
   if (HasPredicate(L, sim.session)) {
@@ -115,7 +105,7 @@ bool Act(lua_State* L, LuaSimulation& sim, Verb verb, nlohmann::json options) {
       throw;
     }
   }
-  CountSteps(L, sim, nodes, before);
+  CountSteps(L, *sim.session);
   return stopped;
 }
 
@@ -173,13 +163,8 @@ void GoTo(lua_State* L, LuaSimulation& sim, int count) {
   }
   nlohmann::json options = at->command.options;
   options["stopped_after"] = count - begins;
-  const std::size_t nodes = timeline.nodes().size();
   sim.node = &timeline.Do(*at->parent, at->command.verb, std::move(options));
-  // It shares its past with the whole action.
-  constexpr int kNodeKib = 4, kStatesPerKib = 64;
-  if (timeline.nodes().size() > nodes) {
-    CountMemory(L, *sim.session, kNodeKib + count / kStatesPerKib);
-  }
+  CountSteps(L, *sim.session);
 }
 
 // Takes physics steps back, exactly.

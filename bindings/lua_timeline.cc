@@ -199,7 +199,7 @@ Pushed LoadState(lua_State* L, const std::string& dir) {
   const std::filesystem::path run =
       Machine::Of(L).files().FindForReading(dir + "/manifest.json").parent_path();
   RefuseLinks(run);
-  constexpr int kSessionKib = 2000, kStepKib = 30;
+  constexpr int kSessionKib = 2000;
   CountMemory(L, kSessionKib);
   MemoryClaim claim = ClaimMemory(L, std::size_t{kSessionKib} << 10U);
   const ResumedSession resumed =
@@ -207,8 +207,7 @@ Pushed LoadState(lua_State* L, const std::string& dir) {
                     context.config.weights.empty() ? DataFolder() / "assets" / "weights"
                                                    : context.config.weights);
   resumed.session->claim() = std::move(claim);
-  CountMemory(L, *resumed.session,
-              kStepKib * static_cast<int>(resumed.session->timeline().nodes().size()));
+  CountSteps(L, *resumed.session);
   PushObject(L, resumed.session);
   PushStep(L, resumed.session, *resumed.node);
   return {2};

@@ -38,9 +38,6 @@ struct LuaValue<PlanChoice> {
 
 namespace {
 
-constexpr int kIterationKib = 100;
-constexpr int kTrajectoryKib = 3000;
-
 nlohmann::json PointsJson(const std::vector<Vector3>& points) {
   nlohmann::json list = nlohmann::json::array();
   for (const Vector3& p : points) list.push_back({p.x(), p.y(), p.z()});
@@ -99,7 +96,7 @@ bool Iterate(lua_State* L, LuaOptimizer& optimizer, bool* stopped) {
   if (optimizer.nominal > 0) options["nominal"] = optimizer.nominal;
   optimizer.Do(Verb::kIterate, std::move(options));
   optimizer.nominal = 0;
-  CountMemory(L, kIterationKib);
+  CountSteps(L, *optimizer.session);
   *stopped = StopsAt(L, optimizer.session, *optimizer.node);
   return true;
 }
@@ -148,7 +145,7 @@ void OptimizerForward(LuaOptimizer& optimizer, const std::optional<int>& steps) 
 Pushed OptimizerScreen(lua_State* L, LuaOptimizer& optimizer, const ScreenOptions& options) {
   optimizer.settings.update(options.ToSettings());
   optimizer.Do(Verb::kScreen);
-  CountMemory(L, kIterationKib);
+  CountSteps(L, *optimizer.session);
   const auto& facts = std::get<ScreenFacts>(optimizer.node->facts.details);
   RecordWriter record(L, kScreening);
   record.Set("round", facts.round)
@@ -181,9 +178,9 @@ Pushed OptimizerCertify(lua_State* L, LuaOptimizer& optimizer, const CertifyOpti
   auto trajectory = std::make_shared<LuaTrajectory>(
       LuaTrajectory{{optimizer.session, optimizer.node, options.ToSettings()}});
   trajectory->Do(Verb::kCertify, plan ? plan->options : nlohmann::json::object());
+  CountSteps(L, *trajectory->session);
   StopsAt(L, trajectory->session, *trajectory->node);
   PushObject(L, std::move(trajectory));
-  CountMemory(L, kTrajectoryKib);
   return {1};
 }
 

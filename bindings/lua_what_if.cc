@@ -62,10 +62,9 @@ Pushed SessionWhatIf(lua_State* L, const std::shared_ptr<Session>& session,
 
 Pushed GraphWhatIf(lua_State* L, LuaGraph& graph, const WhatIfOptions& options) {
   const std::shared_ptr<Session> changed = OpenChanged(L, *graph.session, options);
-  constexpr int kPlanningKib = 20000;
-  CountMemory(L, kPlanningKib);
   const Timeline::Node* first = nullptr;
   const Timeline::Node& end = Repeat(*changed, *graph.session, *graph.node, &first);
+  CountSteps(L, *changed);
   PushObject(L, std::make_shared<LuaGraph>(LuaGraph{{changed, &end}, first}));
   return {1};
 }
@@ -74,6 +73,7 @@ Pushed SimulationWhatIf(lua_State* L, LuaSimulation& simulation, const WhatIfOpt
   const std::shared_ptr<Session> changed = OpenChanged(L, *simulation.session, options);
   const Timeline::Node* first = nullptr;
   const Timeline::Node& end = Repeat(*changed, *simulation.session, *simulation.node, &first);
+  CountSteps(L, *changed);
   PushObject(L, std::make_shared<LuaSimulation>(LuaSimulation{changed, &end, simulation.traced}));
   return {1};
 }

@@ -8,14 +8,17 @@
 #include "app/core/interrupt.h"
 #include "app/core/text.h"
 #include "app/job/apply_stages.h"
+#include "app/job/facts_bytes.h"
 #include "app/job/facts_json.h"
 #include "app/job/planner_settings.h"
 
 namespace pregrasp {
 namespace {
 
-// States kept: those of about ten paths. Older ones are computed again when they are needed.
+// States kept: those of about ten paths, in half of what a script may use. Others are computed
+// again when they are needed.
 constexpr std::size_t kKeptStates = 1500;
+constexpr std::size_t kKeptBytes = 256'000'000;
 
 // "~2" of "path.1.mppi.7~2".
 std::string BranchOf(const std::string& id) {
@@ -119,7 +122,7 @@ Progress ProgressAfter(const Timeline::Node& node) {
 
 }  // namespace
 
-Timeline::Timeline(Job& job) : job_(job) {
+Timeline::Timeline(Job& job) : job_(job), states_(kKeptStates, kKeptBytes) {
   Add(nullptr, TimedApply(nullptr, {Verb::kOpen, "", nlohmann::json::object()}));
 }
 
@@ -157,12 +160,12 @@ const Timeline::Node& Timeline::Add(const Node* parent, Applied applied) {
   node->facts.id = FreeId(node->facts.id, parent);
   node->command = node->facts.command;
   node->progress = CalcProgress(*applied.state);
-  states_[node->number] = std::move(applied.state);
-  if (states_.size() > kKeptStates) states_.erase(std::next(states_.begin()));
+  states_.Keep(node->number, std::move(applied.state));
   return Insert(std::move(node));
 }
 
 const Timeline::Node& Timeline::Insert(std::unique_ptr<Node> node) {
+  facts_bytes_ += CalcBytes(node->facts);
   by_id_[node->facts.id] = node.get();
   if (node->parent != nullptr) children_[node->parent].push_back(node.get());
   nodes_.push_back(std::move(node));
@@ -240,15 +243,14 @@ const Timeline::Node& Timeline::Find(const std::string& id) const {
 }
 
 std::shared_ptr<const JobState> Timeline::GetState(const Node& node) const {
-  const auto kept = states_.find(node.number);
-  if (kept != states_.end()) return kept->second;
+  if (auto kept = states_.Find(node.number)) return kept;
   PREGRASP_CHECK(node.parent != nullptr);
   Applied applied = TimedApply(GetState(*node.parent), node.command);
   if (node.recorded_tolerance) {
     applied.facts.id = node.id();  // which branch it is on is the record's to say
     RequireSame(applied.facts, node.facts, *node.recorded_tolerance);
   }
-  states_[node.number] = applied.state;
+  states_.Keep(node.number, applied.state);
   return std::move(applied.state);
 }
 

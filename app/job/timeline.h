@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/job/apply.h"
+#include "app/job/state_store.h"
 
 namespace pregrasp {
 
@@ -72,9 +73,12 @@ class Timeline : public FactsSource {
   const Node& Find(const std::string& id) const;
   const StepFacts& Get(const std::string& id) const override { return Find(id).facts; }
 
-  /// The job's state after a node: kept for the latest, else computed again from the nearest one
-  /// that is.
+  /// The job's state after a node: kept for those used last, else computed again from the nearest
+  /// one before it that is.
   std::shared_ptr<const JobState> GetState(const Node& node) const;
+
+  /// What the nodes and the states that are kept hold, about [bytes].
+  std::size_t held_bytes() const { return facts_bytes_ + states_.bytes(); }
 
   /// Called with each new node.
   void SetListener(std::function<void(const Node&)> listener) { listener_ = std::move(listener); }
@@ -94,7 +98,8 @@ class Timeline : public FactsSource {
   std::vector<std::unique_ptr<Node>> nodes_;
   std::map<std::string, const Node*> by_id_;
   std::map<const Node*, std::vector<const Node*>> children_;
-  mutable std::map<int, std::shared_ptr<const JobState>> states_;  // by number, the latest
+  std::size_t facts_bytes_ = 0;
+  mutable StateStore states_;  // by number
   mutable std::map<std::string, double> seconds_;
   std::function<void(const Node&)> listener_;
   std::function<bool(const Node&)> gate_;

@@ -83,8 +83,10 @@ class Session {
 
   bool recording() const { return recorder_ != nullptr; }
 
-  /// Counts what this holds for whoever keeps it, where that asks for it.
+  /// Count what this holds for whoever keeps it, where that asks for it: the second one what its
+  /// timeline does.
   MemoryClaim& claim() { return claim_; }
+  MemoryClaim& steps_claim() { return steps_claim_; }
 
  private:
   // @param pictures  whatever --pictures says.
@@ -93,7 +95,7 @@ class Session {
   void Finish(Recorder& recorder, const std::optional<std::string>& status, const Node* node);
   void CompleteVerdict();
 
-  MemoryClaim claim_;
+  MemoryClaim claim_, steps_claim_;
   SessionConfig config_;
   std::unique_ptr<Job> job_;
   std::unique_ptr<Timeline> timeline_;
