@@ -125,9 +125,6 @@ struct HandModel {
   TipSpheres tip_spheres() const;
 };
 
-/// What the hand of scenes that name none is called.
-inline constexpr char kDefaultHand[] = "shadow_right";
-
 /// Whether it is a file that is named, and not a hand below assets/hands.
 bool IsHandFile(const std::string& name_or_file);
 

@@ -56,15 +56,18 @@ struct CameraConfig {
   double fov_deg = 35.0;  ///< vertical field of view
 };
 
+/// What the hand of scenes that name none is called.
+inline constexpr char kDefaultHand[] = "shadow_right";
+
 /// Everything in the world at the start, as plain values. Body 0 is the object; the environment
 /// follows in file order.
 struct Scene {
   std::string name;
   std::vector<Body> bodies;
   FingertipConfig fingertips;
-  std::string hand = "shadow_right";  ///< a name below assets/hands, or a file (hand_model.h)
-  TipSpheres tips;                    ///< that hand's
-  Vector3 gravity{0.0, 0.0, -9.81};   ///< [m/s^2]
+  std::string hand = kDefaultHand;   ///< a name below assets/hands, or a file (hand_model.h)
+  TipSpheres tips;                   ///< that hand's
+  Vector3 gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
   std::optional<CameraConfig> camera;
   std::string file;   ///< the scene file, as given; empty for a scene built in a script
   std::string where;  ///< file:line of the scene, for messages; may be empty
