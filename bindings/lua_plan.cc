@@ -146,6 +146,7 @@ Pushed PlanWhy(lua_State* L, LuaPlan& plan) {
     why.text += ": the object can be grasped where it stands";
   }
   for (const std::string& reason : result.reasons) why.text += "; " + reason;
+  why.items = ExplainPathOf(plan.session->timeline(), *result.end).items;
   return PushExplanation(L, why);
 }
 

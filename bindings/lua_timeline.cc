@@ -277,6 +277,12 @@ Pushed SessionWhy(lua_State* L, const std::shared_ptr<Session>& session) {
   Explanation why;
   why.verdict = StatusAt(timeline, end).value_or("open");
   why.text = fmt::format("The furthest that it came is {}: {}.", end.id(), why.verdict);
+  const Explanation path = ExplainPathOf(timeline, end);
+  if (!path.text.empty()) why.text += " " + path.text + ".";
+  why.items = path.items;
+  // One grasp or lift of many says little of what they came to.
+  const bool one_of_many = end.command.verb == Verb::kGrasp || end.command.verb == Verb::kLift;
+  if (one_of_many) return PushExplanation(L, why);
   for (const std::string& line : DescribeStep(session->scene(), end.facts, timeline)) {
     if (line.find('\t') == std::string::npos) why.text += " " + line;
   }

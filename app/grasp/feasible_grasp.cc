@@ -176,8 +176,8 @@ std::string Explain(const GraspResult& result) {
       return fmt::format("{}: no hand pose was found that reaches; a fingertip stays {:.1f} mm off",
                          fingers, 1e3 * result.kinematics->ik.tip_error);
     case GraspStatus::kCone:
-      return fmt::format("{}: in the best hand pose found a finger touches at {:.0f} deg",
-                         fingers, RadToDeg(result.kinematics->ik.cone_angle));
+      return fmt::format("{}: in the best hand pose found a finger touches at {:.0f} deg", fingers,
+                         RadToDeg(result.kinematics->ik.cone_angle));
     case GraspStatus::kCollision:
       return fmt::format("{}: within reach, but {}", fingers,
                          DescribeOverlap(result.fault.overlap));

@@ -97,9 +97,8 @@ std::string ExplainReason(const LiftResult& lift, LiftReason reason, const Scene
       return fmt::format("the fingertip of {} enters the surroundings by {:.1f} mm",
                          FingerName(lift.deepest_tip), 1e3 * lift.tip_overlap);
     case LiftReason::kDoesNotFollow:
-      return fmt::format(
-          "the object does not follow: it comes to be {:.0f} mm and {:.0f} deg off",
-          1e3 * lift.shift, lift.turn_deg);
+      return fmt::format("the object does not follow: it comes to be {:.0f} mm and {:.0f} deg off",
+                         1e3 * lift.shift, lift.turn_deg);
     case LiftReason::kStillTouches:
       return fmt::format("{} still touches the object at the end",
                          scene.bodies.at(lift.touching_body->value).name);

@@ -72,6 +72,8 @@ Explanation ExplainGraspAgainst(const GraspWithLift& grasp, const GraspWithLift&
 Explanation ExplainFrameAgainst(const FrameFacts& frame, const FrameFacts& other,
                                 const MotionConfig& config);
 Explanation ExplainMotionAgainst(const MotionFacts& motion, const MotionFacts& other);
+/// How far the path came that `end` is of, by its numbers; no text for a step of no path.
+Explanation ExplainPathOf(const Timeline& timeline, const Timeline::Node& end);
 /// How far the path of a rank came in the timeline, beside that which `end` is of.
 Explanation ExplainPathAgainstEnd(const Timeline& timeline, const Timeline::Node& end, int rank);
 

@@ -156,7 +156,7 @@ PathProgress FollowPath(const Timeline& timeline, int rank) {
   return path;
 }
 
-std::string DescribePath(const PathProgress& path, int rank) {
+std::string DescribePath(const PathProgress& path) {
   if (path.furthest == nullptr) return "was not tried";
   const Progress& progress = path.furthest->progress;
   switch (progress.reached) {
@@ -188,7 +188,7 @@ std::string DescribePath(const PathProgress& path, int rank) {
     case Reached::kMoved:
       return "came to a hand motion, after which a neighbour is disturbed";
     case Reached::kOk:
-      return rank == 0 ? "is a success" : "came all the way";
+      return "came all the way";
   }
   return "";
 }
@@ -309,6 +309,20 @@ Explanation ExplainMotionAgainst(const MotionFacts& motion, const MotionFacts& o
   return why;
 }
 
+Explanation ExplainPathOf(const Timeline& timeline, const Timeline::Node& end) {
+  const int rank = PathOfStep(end.facts);
+  Explanation why;
+  if (rank < 0) return why;
+  const PathProgress path = FollowPath(timeline, rank);
+  why.items = {{"plans", static_cast<double>(path.plans), {}, {}},
+               {"certified", static_cast<double>(path.certified), {}, {}},
+               {"feasible", static_cast<double>(path.furthest->progress.feasible), {}, {}},
+               {"lifting", static_cast<double>(path.furthest->progress.lifted), {}, {}}};
+  why.text = rank == 0 ? fmt::format("The path by hand {}", DescribePath(path))
+                       : fmt::format("Path {} {}", rank, DescribePath(path));
+  return why;
+}
+
 Explanation ExplainPathAgainstEnd(const Timeline& timeline, const Timeline::Node& end, int rank) {
   const int winner = PathOfStep(end.facts);  // -1 for a step of no path
   const PathProgress own = FollowPath(timeline, rank),
@@ -333,8 +347,8 @@ Explanation ExplainPathAgainstEnd(const Timeline& timeline, const Timeline::Node
   add("lifting", [](const PathProgress& of) { return Number(of.furthest->progress.lifted); });
   if (rank == winner) {
     why.verdict = "same";
-    why.text = fmt::format("The end, {}, is of path {}, which {}", end.id(), rank,
-                           DescribePath(own, rank));
+    why.text =
+        fmt::format("The end, {}, is of path {}, which {}", end.id(), rank, DescribePath(own));
     return why;
   }
   const Progress nothing;
@@ -342,10 +356,10 @@ Explanation ExplainPathAgainstEnd(const Timeline& timeline, const Timeline::Node
     return of.furthest == nullptr ? nothing : of.furthest->progress;
   };
   why.verdict = Standing(progress(own), progress(other));
-  why.text = fmt::format("Path {} {}", rank, DescribePath(own, rank));
+  why.text = fmt::format("Path {} {}", rank, DescribePath(own));
   if (other.furthest != nullptr) {
     why.text += fmt::format(". The end, {}, is of path {}, which {}", end.id(), winner,
-                            DescribePath(other, winner));
+                            DescribePath(other));
   } else {
     why.text += fmt::format(". The end is {}, of no path", end.id());
   }

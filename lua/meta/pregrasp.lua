@@ -258,7 +258,7 @@ function Session:settle(options) end
 ---@class SettleResult
 ---@field moved_mm number the furthest that a centre of mass was from its start
 ---@field rotated_deg number
----@field at_rest boolean under 1 mm and 0.5 degrees
+---@field at_rest boolean under 1 mm and 0.5 deg
 ---@field body string that moved furthest
 ---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
 ---@field unresolved_mm number how far bodies may have sunk into each other in these
@@ -881,14 +881,14 @@ function Optimizer:shot(options) end
 ---@field f_W Vector3 force on the object [N]
 
 ---@class NeighbourMotion how far movable bodies other than the object are from where the scene has them
----@field worst? string the one that moved most, 30 degrees counting as much as 5 cm; nil if there are none
+---@field worst? string the one that moved most, 30 deg counting as much as 5 cm; nil if there are none
 ---@field moved_mm number the most of all
 ---@field turned_deg number
----@field disturbed boolean one turned over 30 degrees, or is over 5 cm lower: never a success
+---@field disturbed boolean one turned over 30 deg, or is over 5 cm lower: never a success
 
 ---@class Robustness the plan in five worlds with one change each: friction between bodies, mass, how supports resist turning
 ---@field worlds integer
----@field held integer of them, those in which it holds and ends within 20 mm and 10 degrees of where it should
+---@field held integer of them, those in which it holds and ends within 20 mm and 10 deg of where it should
 ---@field worst_shift_mm number between the ends
 ---@field worst_turn_deg number
 ---@field elsewhere string[] the changes with which it does not hold or ends elsewhere
@@ -913,7 +913,7 @@ function Optimizer:shot(options) end
 ---@field neighbours NeighbourMotion at its end
 ---@field robust Robustness? nil unless it is certified
 ---@field num_steps integer
----@field stays_when_released boolean under 10 mm and 5 degrees in 1 s without fingers
+---@field stays_when_released boolean under 10 mm and 5 deg in 1 s without fingers
 ---@field released_shift_mm number
 ---@field released_turn_deg number
 ---@field pressing GraspContact[] that press at its end; every grasp keeps them unless the object stays without
@@ -1026,7 +1026,7 @@ function Grasp:why_not(other) end
 function Grasp:shot(options) end
 
 ---@class Lift
----@field held boolean the object follows within 10 mm and 15 degrees, and fingers alone hold it at the end
+---@field held boolean the object follows within 10 mm and 15 deg, and fingers alone hold it at the end
 ---@field reasons string[] why it is not held: "gives_way", "does_not_follow", ..; empty if it is
 ---@field text string a sentence: what it withstands, or what stands in the way
 ---@field height number how far it came along the way [m]
@@ -1273,7 +1273,7 @@ function pregrasp.wrench(options) end
 ---@field status string "feasible", or the condition that fails
 ---@field residual number net wrench that these leave [N, torques over torque_scale]: rounding if feasible
 
----A hand pose whose fingertips touch the contacts, within cones of 60 degrees, without overlap with
+---A hand pose whose fingertips touch the contacts, within cones of 60 deg, without overlap with
 ---the scene's bodies at the start, the object and the hand itself; certified by FCL.
 ---@param options IkOptions
 ---@return IkResult

@@ -242,8 +242,11 @@ TEST_F(PlannerScriptTest, AGraspSaysWhyItIsNotAnother) {
       end
       if number.pushes then assert(number.pushes.value == x.lift.pushes and number.pushes.other == best.lift.pushes) end
     end
-    print(others))")),
-            "3\n");
+    print(others)
+    local come = {}
+    for _, item in ipairs(s:why().items) do come[item.name] = item.value end
+    print(come.plans, come.feasible == gr.num_feasible, come.lifting == gr.num_lifting, s:why().text:find("Path 1 came to", 1, true) ~= nil))")),
+            "3\n1.0\ttrue\ttrue\ttrue\n");
 }
 
 TEST_F(PlannerScriptTest, APlanSaysWhyItIsNotAnotherAndGivesItsWholeTrajectory) {
