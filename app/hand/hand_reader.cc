@@ -648,6 +648,7 @@ class Reader {
 
   std::set<std::pair<std::string, std::string>> AllowedTouches() {
     std::vector<std::string> names;
+    names.reserve(model_.num_links());
     for (int link = 0; link < model_.num_links(); ++link) names.push_back(model_.links[link].name);
     std::set<std::pair<std::string, std::string>> allowed;
     for (std::size_t i = 0; i < description_.may_touch.size(); ++i) {

@@ -118,10 +118,10 @@ TEST(MachineTest, NoProtectedCallSwallowsTheTimeLimit) {
            "local a, b = ('\\0'):rep(8e6) .. 'a', ('\\0'):rep(8e6) .. 'b' local t = {} for i = 1, "
            "1000 "
            "do t[i] = i % 2 == 0 and a or b end table.sort(t)",
-           "local a, b = ('x'):rep(15e6) .. 'a', ('x'):rep(15e6) .. 'b' while a < b do end",
-           "local a, b = ('x'):rep(15e6) .. 'a', ('x'):rep(15e6) .. 'b' "
+           "local s = ('x'):rep(7e6) local a, b = s .. 'a', s .. 'b' while a < b do end",
+           "local s = ('x'):rep(7e6) local a, b = s .. 'a', s .. 'b' "
            "coroutine.wrap(function() while a < b do end end)()",
-           "local a, b = ('x'):rep(15e6), 'y' local t = {} for i = 1, 1e6 do t[i] = i % 2 == 0 and "
+           "local a, b = ('x'):rep(7e6), 'y' local t = {} for i = 1, 1e5 do t[i] = i % 2 == 0 and "
            "a or "
            "b end while true do pcall(table.sort, t, string.find) end",
            "local t = {} for i = 1, 200 do t[('k'):rep(2e5) .. i] = i end while true do for _ in "

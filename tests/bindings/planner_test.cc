@@ -515,7 +515,7 @@ TEST_F(PlannerScriptTest, WhatMakesNoSenseIsOneLine) {
       {"local g = graph() g:score() g:score()",
        "score: expected a graph without scores, got one that has them"},
       {"graph():paths()",
-       "paths: paths: expected a graph that has been pruned, got one that has not"},
+       "paths: expected a graph that has been pruned, got one that has not: call prune() first"},
       {"graph():back()", "back: steps: expected 0 to 0 steps, got 1"},
       {"graph():why(144)", "why: "},
       {"pruned():prune{ top_percent = 1 }",

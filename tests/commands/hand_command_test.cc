@@ -58,7 +58,8 @@ TEST(HandCommandTest, SaysEachFaultInALineAndDrawsNothing) {
   EXPECT_THAT(RunProgram({"hand", "check", "for_finger"}, folder.path()).err,
               HasSubstr("for_finger: expected a hand.lua"));
   const ProgramResult run =
-      RunProgram({"run", (kSource / "scenes" / "ruler.lua").string(), "--set", "hand=for_finger"}, folder.path());
+      RunProgram({"run", (kSource / "scenes" / "ruler.lua").string(), "--set", "hand=for_finger"},
+                 folder.path());
   EXPECT_EQ(run.code, 2);
   EXPECT_THAT(run.err, HasSubstr("hand: expected the name of a hand (four_finger, shadow_left, "
                                  "shadow_right) or a hand.lua, got \"for_finger\" (did you mean "
@@ -93,9 +94,10 @@ TEST(HandCommandTest, TheDocumentsExampleIsTheFileThatIsShipped) {
 TEST(HandCommandTest, ARunWithAHandOfOnesOwnKeepsIt) {
   const TestFolder folder;
   fs::copy(kOwnHand, folder.path() / "own");
-  const ProgramResult run = RunProgram({"run", (kSource / "scenes" / "ruler.lua").string(), "--set", "hand=own/hand.lua",
-                                        "--seed", "3", "--pictures", "none", "--out", "run"},
-                                       folder.path());
+  const ProgramResult run =
+      RunProgram({"run", (kSource / "scenes" / "ruler.lua").string(), "--set", "hand=own/hand.lua",
+                  "--seed", "3", "--pictures", "none", "--out", "run"},
+                 folder.path());
   ASSERT_EQ(run.code, 0) << run.err;
   fs::remove_all(folder.path() / "own");
   const fs::path directory = folder.path() / "run";
