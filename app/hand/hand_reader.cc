@@ -1,10 +1,7 @@
-#include <console_bridge/console.h>
 #include <fmt/format.h>
-#include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include "app/core/data_folder.h"
@@ -13,72 +10,18 @@
 #include "app/hand/distance.h"
 #include "app/hand/hand_file.h"
 #include "app/hand/hand_kinematics.h"
+#include "app/hand/hand_mirror.h"
+#include "app/hand/urdf_tree.h"
 
 namespace pregrasp {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSamePlace = 1e-7;          // [m]; the file's numbers carry nine decimals
-constexpr double kTipAtEnd = 1e-6;           // [m], of a capsule
-constexpr double kTipInside = 5e-4;          // [m], of what a fingertip may lie within its link
-constexpr double kTipFar = 2e-3;             // [m], of what it may be off it
-constexpr std::size_t kMaxUrdf = 4U << 20U;  // [bytes]
-constexpr int kMaxNesting = 100;
-
-Vector3 FromUrdf(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
-
-RigidTransform FromUrdf(const urdf::Pose& pose) {
-  double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
-  pose.rotation.getQuaternion(x, y, z, w);
-  return MakeTransform(Quaternion(w, x, y, z), FromUrdf(pose.position));
-}
-
-Matrix3 PointInertia(double mass, const Vector3& p) {
-  return mass * (p.squaredNorm() * Matrix3::Identity() - p * p.transpose());
-}
-
-// The first complaint of the URDF parser, which has no other way to tell.
-class FirstComplaint : public console_bridge::OutputHandler {
- public:
-  void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/,
-           int /*line*/) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && text_.empty()) text_ = OneLine(text);
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-// The parser descends by recursion, so elements within elements have a limit.
-bool IsNestedTooDeep(const std::string& xml) {
-  int depth = 0;
-  for (std::size_t i = 0; i + 1 < xml.size(); ++i) {
-    if (xml[i] == '<') {
-      if (xml[i + 1] == '/') {
-        --depth;
-      } else if (xml[i + 1] != '!' && xml[i + 1] != '?') {
-        ++depth;
-      }
-    } else if (xml[i] == '/' && xml[i + 1] == '>') {
-      --depth;
-    }
-    if (depth > kMaxNesting) return true;
-  }
-  return false;
-}
-
-std::string ReadText(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text(kMaxUrdf + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad() || text.size() > kMaxUrdf || IsNestedTooDeep(text)) {
-    throw InputError(file.string(), "", "a URDF of at most 4 MB, 100 elements deep", "");
-  }
-  return text;
-}
+constexpr double kSamePlace = 1e-7;  // [m]; the file's numbers carry nine decimals
+constexpr double kTipAtEnd = 1e-6;   // [m], of a capsule
+constexpr double kTipInside = 5e-4;  // [m], of what a fingertip may lie within its link
+constexpr double kTipFar = 2e-3;     // [m], of what it may be off it
 
 // The file below one of the folders that a hand's files may lie in.
 fs::path FindFile(const fs::path& file, const fs::path& description, const std::string& what) {
@@ -107,16 +50,6 @@ Matrix3 RotationOf(const HandDescription::Frame& frame) {
   return R;
 }
 
-// What turns the right hand's frames into the left's: x to -x on both sides.
-Vector3 Mirrored(const Vector3& v) { return {-v.x(), v.y(), v.z()}; }
-Matrix3 Mirrored(const Matrix3& M) {
-  const Matrix3 S = Vector3(-1.0, 1.0, 1.0).asDiagonal();
-  return S * M * S;
-}
-RigidTransform Mirrored(const RigidTransform& X) {
-  return MakeTransform(Mirrored(Matrix3(X.linear())), Mirrored(Vector3(X.translation())));
-}
-
 class Reader {
  public:
   Reader(HandDescription description, HandReading* reading)
@@ -125,8 +58,8 @@ class Reader {
   void Read() {
     const fs::path file = FindFile(description_.urdf, description_.file, "urdf");
     urdf_file_ = file;
-    const std::string text = ReadText(file);
-    ParseUrdf(text);
+    const std::string text = ReadUrdfText(file);
+    urdf_ = ParseUrdf(file, text);
     model_.name = description_.name;
     model_.file = description_.file;
     model_.files = {description_.file, file};
@@ -140,7 +73,7 @@ class Reader {
     for (int f = 0; f < model_.num_fingers; ++f) ReadTip(static_cast<Finger>(f));
     SortCapsules();
     ReadPosture();
-    if (description_.mirror) Mirror();
+    if (description_.mirror) MirrorHand(&model_);
     if (model_.capsules.size() > kMaxHandCapsules) {
       AddFault("capsules", fmt::format("at most {}", kMaxHandCapsules),
                std::to_string(model_.capsules.size()));
@@ -157,16 +90,6 @@ class Reader {
   }
   void AddUrdfFault(const std::string& field, const std::string& expected, const std::string& got) {
     reading_.faults.emplace_back(urdf_file_.string(), field, expected, got);
-  }
-
-  void ParseUrdf(const std::string& text) {
-    FirstComplaint complaint;
-    console_bridge::useOutputHandler(&complaint);
-    urdf_ = urdf::parseURDF(text);
-    console_bridge::restorePreviousOutputHandler();
-    if (!urdf_) {
-      throw InputError(urdf_file_.string(), "", "a valid URDF description", complaint.text());
-    }
   }
 
   std::string NearestLink(const std::string& name) const {
@@ -261,7 +184,7 @@ class Reader {
           "one that follows \"" + joint.mimic->joint_name + "\" (mimic): make it free, or fixed");
     }
     if (joint.type != urdf::Joint::REVOLUTE || !joint.limits) {
-      AddUrdfFault(name, "a revolute joint with limits", TypeName(joint));
+      AddUrdfFault(name, "a revolute joint with limits", MovementOf(joint));
       return;
     }
     const Vector3 axis = FromUrdf(joint.axis);
@@ -282,21 +205,6 @@ class Reader {
     }
     if (!(out.max_speed > 0.0 && std::isfinite(out.max_speed))) {
       AddUrdfFault(name, "a limit of velocity above 0 rad/s", FormatDouble(out.max_speed));
-    }
-  }
-
-  static std::string TypeName(const urdf::Joint& joint) {
-    switch (joint.type) {
-      case urdf::Joint::REVOLUTE:
-        return "one without limits";
-      case urdf::Joint::CONTINUOUS:
-        return "a continuous one";
-      case urdf::Joint::PRISMATIC:
-        return "a prismatic one";
-      case urdf::Joint::FIXED:
-        return "a fixed one";
-      default:
-        return "another type";
     }
   }
 
@@ -341,26 +249,6 @@ class Reader {
     }
   }
 
-  // Adds the body that `urdf` describes, its frame at X_LB, to the link.
-  static void AddInertia(const urdf::Link& urdf, const RigidTransform& X_LB, HandLink* link) {
-    if (!urdf.inertial) return;
-    const urdf::Inertial& inertial = *urdf.inertial;
-    const RigidTransform X_LI = X_LB * FromUrdf(inertial.origin);
-    Matrix3 I;
-    I << inertial.ixx, inertial.ixy, inertial.ixz,  //
-        inertial.ixy, inertial.iyy, inertial.iyz,   //
-        inertial.ixz, inertial.iyz, inertial.izz;
-    const double mass = link->mass + inertial.mass;
-    if (!(mass > 0.0)) return;
-    const Vector3 p_LoLcm =
-        (link->mass * link->p_LoLcm + inertial.mass * X_LI.translation()) / mass;
-    link->I_LLcm += PointInertia(link->mass, link->p_LoLcm - p_LoLcm) +
-                    X_LI.linear() * I * X_LI.linear().transpose() +
-                    PointInertia(inertial.mass, X_LI.translation() - p_LoLcm);
-    link->mass = mass;
-    link->p_LoLcm = p_LoLcm;
-  }
-
   // That of a body: positive, and no moment above the sum of the other two.
   void CheckInertia(const HandLink& link) {
     if (!(link.mass > 0.0 && std::isfinite(link.mass))) {
@@ -388,7 +276,7 @@ class Reader {
     if (const auto mesh = std::dynamic_pointer_cast<urdf::Mesh>(visual.geometry)) {
       Mesh shape;
       try {
-        shape.file = FindFile(urdf_file_.parent_path() / FileOf(mesh->filename), description_.file,
+        shape.file = FindFile(urdf_file_.parent_path() / MeshFileOf(*mesh), description_.file,
                               body + ".visual")
                          .string();
       } catch (const InputError& error) {
@@ -412,17 +300,6 @@ class Reader {
     model_.visuals.push_back(std::move(out));
   }
 
-  // A mesh's file without "package://NAME/" or "file://".
-  static std::string FileOf(const std::string& name) {
-    for (const std::string scheme : {"package://", "file://"}) {
-      if (name.rfind(scheme, 0) != 0) continue;
-      const std::string rest = name.substr(scheme.size());
-      const std::size_t slash = rest.find('/');
-      return scheme == "file://" || slash == std::string::npos ? rest : rest.substr(slash + 1);
-    }
-    return name;
-  }
-
   // URDF knows no capsule: the cylinders of a link with the spheres at their ends, then the spheres
   // left over.
   void ReadCapsules(int index, const urdf::Link& urdf, const RigidTransform& X_LB) {
@@ -440,7 +317,7 @@ class Reader {
       } else if (!std::dynamic_pointer_cast<urdf::Cylinder>(shape->geometry)) {
         AddUrdfFault(urdf.name + ".collision", "cylinders and spheres",
                      fmt::format("a {}: say capsules = {{[\"{}\"] = ..}} in the description",
-                                 KindOf(*shape), model_.links[index].name));
+                                 ShapeOf(*shape), model_.links[index].name));
         return;
       }
     }
@@ -448,7 +325,11 @@ class Reader {
       const auto cylinder = std::dynamic_pointer_cast<urdf::Cylinder>(shape->geometry);
       if (!cylinder) continue;
       const RigidTransform X_LC = X_LB * FromUrdf(shape->origin);
-      HandCapsule capsule{NameOf(urdf, *shape), index, {}, {}, cylinder->radius};
+      HandCapsule capsule{urdf.name + '/' + (shape->name.empty() ? ShapeOf(*shape) : shape->name),
+                          index,
+                          {},
+                          {},
+                          cylinder->radius};
       for (const double end : {-0.5, 0.5}) {
         Vector3 p_L = X_LC * Vector3(0.0, 0.0, end * cylinder->length);
         const auto ball = std::find_if(balls.begin(), balls.end(), [&](const Ball& b) {
@@ -478,24 +359,6 @@ class Reader {
       return;
     }
     model_.capsules.push_back(std::move(capsule));
-  }
-
-  static std::string NameOf(const urdf::Link& urdf, const urdf::Collision& shape) {
-    return urdf.name + '/' + (shape.name.empty() ? KindOf(shape) : shape.name);
-  }
-  static std::string KindOf(const urdf::Collision& shape) {
-    switch (shape.geometry ? shape.geometry->type : -1) {
-      case urdf::Geometry::BOX:
-        return "box";
-      case urdf::Geometry::CYLINDER:
-        return "cylinder";
-      case urdf::Geometry::SPHERE:
-        return "sphere";
-      case urdf::Geometry::MESH:
-        return "mesh";
-      default:
-        return "shape that it does not name";
-    }
   }
 
   void ReadTip(Finger finger) {
@@ -600,26 +463,6 @@ class Reader {
                  fmt::format("an angle from {} to {} rad", model_.q_lower[j], model_.q_upper[j]),
                  FormatDouble(angle));
       }
-    }
-  }
-
-  void Mirror() {
-    for (int link = 0; link < model_.num_links(); ++link) {
-      model_.links[link].p_LoLcm = Mirrored(model_.links[link].p_LoLcm);
-      model_.links[link].I_LLcm = Mirrored(model_.links[link].I_LLcm);
-    }
-    for (int j = 0; j < model_.num_joints; ++j) {
-      model_.joints[j].X_PJ = Mirrored(model_.joints[j].X_PJ);
-      model_.joints[j].axis = -Mirrored(model_.joints[j].axis);  // a turn is no vector
-    }
-    for (Fingertip& tip : model_.tips) tip.p_LT = Mirrored(tip.p_LT);
-    for (HandCapsule& capsule : model_.capsules) {
-      capsule.p_LA = Mirrored(capsule.p_LA);
-      capsule.p_LB = Mirrored(capsule.p_LB);
-    }
-    for (HandVisual& visual : model_.visuals) {
-      visual.X_LV = Mirrored(visual.X_LV);
-      visual.scale.x() = -visual.scale.x();
     }
   }
 

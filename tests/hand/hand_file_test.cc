@@ -148,7 +148,21 @@ TEST_F(HandFileTest, AUrdfThatIsNoHandIsNamedInOneLine) {
       HasSubstr("thumb_distal.collision: expected the shape of the finger's last link, got none"));
   std::string deep;
   for (int i = 0; i < 2000; ++i) deep += "<a>";
-  EXPECT_THAT(FaultsOfUrdf("<link name=\"palm\">", deep), HasSubstr("100 elements deep"));
+  EXPECT_THAT(FaultsOfUrdf("<link name=\"palm\">", deep), HasSubstr("10000 elements, 100 deep"));
+  std::string chain;
+  for (int i = 0; i < 20000; ++i) {
+    chain += fmt::format(
+        "<link name=\"l{0}\"/><joint name=\"j{0}\" type=\"fixed\">"
+        "<parent link=\"{1}\"/><child link=\"l{0}\"/></joint>",
+        i, i == 0 ? "palm" : fmt::format("l{}", i - 1));
+  }
+  EXPECT_THAT(FaultsOfUrdf("</robot>", chain + "</robot>"), HasSubstr("10000 elements"));
+  const std::string circle =
+      "<link name=\"world\"/><link name=\"wrist\"/>"
+      "<joint name=\"a\" type=\"fixed\"><parent link=\"wrist\"/><child link=\"palm\"/></joint>"
+      "<joint name=\"b\" type=\"fixed\"><parent link=\"palm\"/><child link=\"wrist\"/></joint>";
+  EXPECT_THAT(FaultsOfUrdf("</robot>", circle + "</robot>"),
+              HasSubstr("a link of one tree, got one whose parents go round in a circle"));
 }
 
 TEST_F(HandFileTest, SeveralFaultsAreSaidAtOnce) {
