@@ -9,6 +9,9 @@
 namespace pregrasp {
 namespace {
 
+// Angles between which a thumb is open, from its root: turn, opposition, two in the middle, last.
+constexpr std::array<std::pair<double, double>, 5> kOpenThumb{
+    {{-0.2, 1.0}, {0.0, 0.6}, {-0.1, 0.1}, {-0.4, 0.1}, {-0.2, 0.3}}};
 constexpr double kTruthCone = 0.52;  // cosine at the truth, a little inside 60 degrees
 
 RigidTransform Turned(double yaw, const Vector3& p) {
@@ -111,25 +114,28 @@ HandJoints OpenPosture(const HandModel& hand, Rng& rng) {
     q[j] = sideways ? 0.3 * rng.Uniform(lower, upper)
                     : lower + rng.Uniform(0.0, 0.3) * (upper - lower);
   }
-  const int thumb = hand.fingers[0].first;
-  q[thumb] = rng.Uniform(-0.2, 1.0);
-  q[thumb + 1] = rng.Uniform(0.0, 0.6);
-  q[thumb + 2] = rng.Uniform(-0.1, 0.1);
-  q[thumb + 3] = rng.Uniform(-0.4, 0.1);
-  q[thumb + 4] = rng.Uniform(-0.2, 0.3);
-  q[12] = rng.Uniform(0.0, 0.3);  // the palm's arch
+  const auto [thumb, thumb_joints] = hand.fingers[0];
+  for (int k = 0; k < std::min<int>(thumb_joints, kOpenThumb.size()); ++k) {
+    q[thumb + k] = rng.Uniform(kOpenThumb[k].first, kOpenThumb[k].second);
+  }
+  for (int f = 1; f < hand.num_fingers; ++f) {
+    const auto [first, count] = hand.fingers[f];
+    if (count > 4) q[first] = rng.Uniform(0.0, 0.3);  // the palm's arch
+  }
   return q;
 }
 
 HandJoints ClosedPosture(const HandModel& hand, const HandJoints& open, Rng& rng) {
   HandJoints q = open;
-  for (int f = 0; f < kNumFingers; ++f) {
+  for (int f = 0; f < hand.num_fingers; ++f) {
     const auto [first, count] = hand.fingers[f];
-    for (int j = first + count - 3; j < first + count; ++j) {
+    for (int j = first + std::max(0, count - 3); j < first + count; ++j) {
       q[j] = open[j] + rng.Uniform(0.5, 1.0) * (hand.q_upper[j] - open[j]);
     }
   }
-  q[18] = open[18] + rng.Uniform(0.3, 1.0) * (hand.q_upper[18] - open[18]);
+  const int opposition = hand.fingers[0].first + 1;
+  q[opposition] =
+      open[opposition] + rng.Uniform(0.3, 1.0) * (hand.q_upper[opposition] - open[opposition]);
   return q;
 }
 
