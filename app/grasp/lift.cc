@@ -73,7 +73,8 @@ class Lift {
 
 std::string DescribeDirection(const LeastStiffness& least) {
   const bool turns = least.turn.norm() > least.shift.norm();
-  const Vector3 axis = (turns ? least.turn : least.shift).normalized();
+  Vector3 axis = (turns ? least.turn : least.shift).normalized();
+  axis = (1e2 * axis).array().round() / 1e2 + 0.0;  // without a zero's sign
   return fmt::format("{} ({:.2f}, {:.2f}, {:.2f}) of the object",
                      turns ? "as it turns about" : "as it shifts along", axis.x(), axis.y(),
                      axis.z());
@@ -89,7 +90,7 @@ std::string ExplainReason(const LiftResult& lift, LiftReason reason, const Scene
     case LiftReason::kNoForces:
       return "no forces within cones and limits balance the weight";
     case LiftReason::kGivesWay:
-      return fmt::format("the grasp gives way: its stiffness is {:.1f} N/m {}",
+      return fmt::format("the grasp gives way: its stiffness is {:.3g} N/m {}",
                          lift.forces->least.value, DescribeDirection(lift.forces->least));
     case LiftReason::kDiverged:
       return "the object left the scene";

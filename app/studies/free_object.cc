@@ -1,6 +1,18 @@
 #include "app/studies/free_object.h"
 
 namespace pregrasp {
+namespace {
+
+constexpr std::uint64_t kUnseenSeed = 0x6c6561726e;
+
+}  // namespace
+
+ItemConfig MakeUnseenItems(const LearningObjects& objects, std::uint64_t seed) {
+  ItemConfig config;
+  config.seed = kUnseenSeed + seed;
+  config.objects = objects;
+  return config;
+}
 
 FreeObject::FreeObject(const ItemConfig& config, std::int64_t index) {
   const SceneObject object = MakeItemObject(config, index);

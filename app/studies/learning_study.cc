@@ -12,6 +12,7 @@
 
 #include "app/core/data_folder.h"
 #include "app/core/json_text.h"
+#include "app/studies/label_noise.h"
 #include "app/studies/learning_trials.h"
 #include "app/studies/scatter_plot.h"
 #include "app/studies/table_text.h"
@@ -29,14 +30,16 @@ constexpr std::uint64_t kLibrarySeed = 0x6c696272;
 constexpr int kMeshesOfItem = 4;  // which are labelled in parallel
 constexpr std::array<const char*, 3> kCaseNames{"thumb", "index", "both"};
 
-// Items: the labels, the score's speed, objects by family, number and seed, ladders by seed, and
-// the meshes once.
+// Items: the labels, the score's speed, labels repeated on an object of each family, objects by
+// family, number and seed, ladders by seed, and the meshes once.
 class LearningItems : public Study {
  public:
   explicit LearningItems(const StudySetup& setup)
       : setup_(setup), families_(ReadHeldOutFamilies(setup.weights)) {}
 
-  std::int64_t num_items() const override { return 2 + num_seeded_items() + num_mesh_items(); }
+  std::int64_t num_items() const override {
+    return 2 + num_families() + num_seeded_items() + num_mesh_items();
+  }
 
   Json MakeItem(std::int64_t index) const override {
     const auto record = [](const char* kind, Json facts) {
@@ -50,6 +53,12 @@ class LearningItems : public Study {
     }
     if (index == 1) return record("speed", {{"seconds", TimeScore(setup_.weights)}});
     index -= 2;
+    if (index < num_families()) {
+      ThreadPool pool(setup_.threads);
+      return record("noise", RepeatLabels(ItemOfFamily(families_[index], 0), setup_.first_seed,
+                                          IsProgressRoom(setup_.weights), pool));
+    }
+    index -= num_families();
     if (index >= num_seeded_items()) {
       const std::int64_t begin = (index - num_seeded_items()) * kMeshesOfItem;
       const std::int64_t end = std::min(begin + kMeshesOfItem, num_meshes());
@@ -70,7 +79,8 @@ class LearningItems : public Study {
   }
 
  private:
-  std::int64_t num_objects() const { return kObjects * std::ssize(families_); }
+  std::int64_t num_families() const { return std::ssize(families_); }
+  std::int64_t num_objects() const { return kObjects * num_families(); }
   std::int64_t num_seeded_items() const {
     return (num_objects() + std::ssize(setup_.ladders)) * setup_.seeds;
   }
@@ -221,12 +231,14 @@ StudyFiles TabulateLearning(const std::vector<nlohmann::json>& items) {
                {"score_rank", score.at("all").at("rank")},
                {"score_auc", score.at("all").at("auc")},
                {"calibration", score.at("all").at("calibration")}};
-  std::vector<nlohmann::json> objects, meshes;
+  std::vector<nlohmann::json> objects, meshes, noise;
   for (const nlohmann::json& item : items) {
     if (item.at("kind") == "object") objects.push_back(item);
+    if (item.at("kind") == "noise") noise.push_back(item);
     if (item.at("kind") != "meshes") continue;
     for (const nlohmann::json& mesh : item.at("objects")) meshes.push_back(mesh);
   }
+  summary["ceiling"] = CalcLabelCeiling(noise);
   AddGeneratorShares(objects, summary);
   summary["ms_128x3"] = 1e3 * items.at(1).at("seconds").get<double>();
   std::vector<std::vector<std::string>> families = {kFamilyColumns};
@@ -238,6 +250,9 @@ StudyFiles TabulateLearning(const std::vector<nlohmann::json>& items) {
     summary["families"][family] = facts;
   }
   for (const char* part : {"held", "not_held", "all"}) add_family(part, score.at(part));
+  Json ceiling = summary["ceiling"];
+  ceiling["calibration"] = nullptr;
+  add_family("what labels allow", ceiling);
   std::string meshes_text;
   if (!meshes.empty()) {
     summary["objects"] = SummariseMeshes(meshes);
@@ -277,7 +292,10 @@ StudyFiles TabulateLearning(const std::vector<nlohmann::json>& items) {
        PlotBins("Probability of a lifted grasp, families never seen", score.at("lifted_bins"))},
       {"learning.md",
        fmt::format(
-           "The score on labels of families that it never saw:\n\n{}\n{}Rank correlation, along "
+           "The score on labels of families that it never saw, and last what no score can go "
+           "beyond, as\n"
+           "labels made again by other searches differ from one another:\n\n{}\n{}Rank "
+           "correlation, along "
            "each ladder, of the score of the tenth of placements that scores best\nwith the "
            "truth of these (the share of reliefs at which a search has a grasp with "
            "them):\n\n{}\nPose by pose:\n\n{}",
@@ -293,6 +311,8 @@ std::string DescribeLearningItem(const nlohmann::json& item) {
   if (kind == "speed") {
     return fmt::format("speed: {:.1f} ms", 1e3 * item.at("seconds").get<double>());
   }
+  if (kind == "noise")
+    return fmt::format("labels of {} again", item.at("family").get<std::string>());
   if (kind == "meshes") return fmt::format("{} meshes", item.at("objects").size());
   if (kind == "object") return fmt::format("object {}", item.at("object").get<std::string>());
   return fmt::format("ladder {}: {} poses", item.at("ladder").get<std::string>(),

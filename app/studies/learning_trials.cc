@@ -38,10 +38,11 @@ constexpr const char* kScoreFile = "score.safetensors";
 constexpr int kPartsOfGrasp = 1000;  // streams
 constexpr double kHandSpan = 0.13;   // between contacts of one hand [m]
 
-// Of objects that no data set's items are.
-constexpr std::uint64_t kItemSeed = 0x6c6561726e;
-
 Json TrainingOf(const TensorFile& weights) { return Json::parse(weights.metadata_at("training")); }
+
+bool IsRoom(const TensorFile& weights) {
+  return TrainingOf(weights).value("progress", "relief") == "room";
+}
 
 // A context's object in the networks' eyes.
 ObjectState SeenIn(const ContextRecord& context) {
@@ -74,8 +75,7 @@ class ScoreJudge {
 
  private:
   explicit ScoreJudge(const TensorFile& file)
-      : score_(ScoreFunction::FromTensors(file)),
-        by_room_(TrainingOf(file).value("progress", "relief") == "room") {}
+      : score_(ScoreFunction::FromTensors(file)), by_room_(IsRoom(file)) {}
 
   ScoreFunction score_;
   bool by_room_;
@@ -86,14 +86,6 @@ TrainingData PrepareToJudge(std::shared_ptr<const Dataset> dataset, const ScoreJ
   return PrepareTrainingData(
       std::move(dataset), judge.levels(), families,
       [](const TrainingContext& context) { return !context.truths.empty(); });
-}
-
-// Of items that no data set has.
-ItemConfig UnseenItems(const LearningObjects& objects, std::uint64_t seed) {
-  ItemConfig config;
-  config.seed = kItemSeed + seed;
-  config.objects = objects;
-  return config;
 }
 
 // What a grasp gives to one of the generators, with nothing around the object.
@@ -189,6 +181,8 @@ std::vector<std::string> ReadHeldOutFamilies(const fs::path& weights) {
   return training["validation"].get<std::vector<std::string>>();
 }
 
+bool IsProgressRoom(const fs::path& weights) { return IsRoom(ReadTensors(weights / kScoreFile)); }
+
 void JudgedLabels::Add(double progress, double s, double is_lifted, double p) {
   truth.push_back(progress);
   score.push_back(s);
@@ -249,7 +243,7 @@ Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64
                   std::uint64_t seed, const fs::path& weights, const GraspLibrary& library,
                   ThreadPool& pool, const TrialConfig& config) {
   StateItemConfig items;
-  items.item = UnseenItems(objects, seed);
+  items.item = MakeUnseenItems(objects, seed);
   items.item.scenes = 1;
   items.motion.pushes = config.pushes;
   items.motion.states = config.states;
@@ -285,7 +279,7 @@ Json JudgeObjects(const LearningObjects& objects, std::int64_t begin, std::int64
 Json TryGenerator(const LearningObjects& objects, std::int64_t index, std::uint64_t seed,
                   const fs::path& weights, const GraspLibrary& library, ThreadPool& pool,
                   const TrialConfig& config) {
-  const FreeObject object(UnseenItems(objects, seed), index);
+  const FreeObject object(MakeUnseenItems(objects, seed), index);
   const GraspWorld world = MakeTrainingWorld(object.scene);
   const std::vector<RigidTransform> X_WB = world.StartPoses();
   const ContactPlaces places(world, X_WB);
@@ -395,7 +389,7 @@ Json ProbeLadder(const Ladder& ladder, std::uint64_t seed, const StudySetup& set
 double TimeScore(const fs::path& weights) {
   constexpr int kRollouts = 128, kStates = 3, kRepeats = 5;
   const ScoreFunction score = ScoreFunction::Load(weights / kScoreFile);
-  const FreeObject object(UnseenItems(nullptr, 1), 0);
+  const FreeObject object(MakeUnseenItems(nullptr, 1), 0);
   const MatrixX3& P = object.cloud.P;
   const CloudStructure structure = score.BuildStructure(P, Matrix3::Identity());
   std::vector<ObjectState> states(kRollouts * kStates);

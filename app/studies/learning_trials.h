@@ -8,15 +8,13 @@
 #include <vector>
 
 #include "app/core/thread_pool.h"
+#include "app/studies/free_object.h"
 #include "app/studies/grasp_library.h"
 #include "app/studies/ladder.h"
 #include "app/studies/study.h"
 #include "app/training/object_families.h"
 
 namespace pregrasp {
-
-/// Objects to judge networks by; null for random members of ObjectFamilies().
-using LearningObjects = std::shared_ptr<const std::vector<TrainingObject>>;
 
 /// Labels beside the score's answers.
 struct JudgedLabels {
@@ -36,6 +34,9 @@ struct TrialConfig {
 
 /// The weights' own word on which families they never saw. @throws InputError if there is none.
 std::vector<std::string> ReadHeldOutFamilies(const std::filesystem::path& weights);
+
+/// Whether the weights' progress is a state's room (GraspRoom), not its relief.
+bool IsProgressRoom(const std::filesystem::path& weights);
 
 /// What the score says of the labels that are kept with the sources, on the families held out:
 /// JudgedLabels::ToJson of all, by family, held by a finger or not; and of both outputs, in ten

@@ -80,6 +80,22 @@ class StateLabeler {
     return std::move(labels_);
   }
 
+  std::vector<TruthRecord> LabelAgain(const std::vector<TruthRecord>& truths) {
+    for (const TruthRecord& truth : truths) {
+      Contacts contacts;
+      for (int f = 0; f < kNumPlanningFingers; ++f) {
+        const auto finger = static_cast<Finger>(f);
+        if (const GraspContact* fixed = FindContact(state_.fixed, finger)) {
+          contacts.push_back(*fixed);
+        } else if (const auto& given = truth.contacts[f]) {
+          contacts.push_back({finger, given->p_OC, given->nhat_O});
+        }
+      }
+      LabelContacts(contacts);
+    }
+    return std::move(labels_.truths);
+  }
+
  private:
   void Search() {
     ThreadPool alone(1);
@@ -310,6 +326,13 @@ SearchLabels LabelState(const World* world, const GraspWorld& grasp_world, const
                         const PointCloud& cloud, const ReachedState& state,
                         const SearchLabelConfig& config, std::uint64_t seed) {
   return StateLabeler(world, grasp_world, room, cloud, state, config, seed).Label();
+}
+
+std::vector<TruthRecord> LabelAgain(const World* world, const GraspWorld& grasp_world,
+                                    const GraspRoom& room, const PointCloud& cloud,
+                                    const ReachedState& state, const SearchLabelConfig& config,
+                                    const std::vector<TruthRecord>& truths, std::uint64_t seed) {
+  return StateLabeler(world, grasp_world, room, cloud, state, config, seed).LabelAgain(truths);
 }
 
 }  // namespace pregrasp

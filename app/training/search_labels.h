@@ -60,4 +60,11 @@ SearchLabels LabelState(const World* world, const GraspWorld& grasp_world, const
                         const PointCloud& cloud, const ReachedState& state,
                         const SearchLabelConfig& config, std::uint64_t seed);
 
+/// The contacts of `truths`, which LabelState gave of this state, labelled again by searches and a
+/// room of their own: as far as the labels differ, they are noise.
+std::vector<TruthRecord> LabelAgain(const World* world, const GraspWorld& grasp_world,
+                                    const GraspRoom& room, const PointCloud& cloud,
+                                    const ReachedState& state, const SearchLabelConfig& config,
+                                    const std::vector<TruthRecord>& truths, std::uint64_t seed);
+
 }  // namespace pregrasp
