@@ -187,19 +187,30 @@ constexpr char kSameAsRun[] = R"lua(
       while o:step() do end
       local certified = {}
       for plan = 1, 8 do  -- as many as differ
-        local is_one, t
-        if #certified < 4 then is_one, t = pcall(o.certify, o, {}, plan) end
+        local is_one, t = pcall(o.certify, o, {}, plan)
         if not is_one then break end
-        if t.certified then certified[#certified + 1] = { held = t.robust.held, grasps = t:grasps {} } end
+        if t.certified then certified[#certified + 1] = { plan = plan, t = t, held = t.robust.held } end
       end
-      local first = certified[1]
-      for _, x in ipairs(certified) do
-        local a, b = x.grasps, first.grasps
-        if a.num_lifting > b.num_lifting or a.num_lifting == b.num_lifting and x.held > first.held then first = x end
-      end
-      local best = first and first.grasps:best()
-      if best and best.lift.held then
-        for frame in best:motion {}:frames() do done = frame.number > 0 end
+      table.sort(certified, function(a, b)
+        if a.held ~= b.held then return a.held > b.held end
+        return a.plan < b.plan
+      end)
+      local next = 1
+      while not done and next <= math.min(#certified, 4) do
+        local first, least = nil, certified[next].held - 1
+        while next <= math.min(#certified, 4) and certified[next].held >= least do
+          local x = certified[next]
+          x.grasps = x.t:grasps {}
+          local a, b = x.grasps, first and first.grasps
+          if not b or a.num_lifting > b.num_lifting or a.num_lifting == b.num_lifting and x.held > first.held then
+            first = x
+          end
+          next = next + 1
+        end
+        local best = first.grasps:best()
+        if best and best.lift.held then
+          for frame in best:motion {}:frames() do done = frame.number > 0 end
+        end
       end
     end
   end
@@ -263,9 +274,10 @@ int CountLifting(const LoadedRun& run, const CertifyFacts* certified) {
   }));
 }
 
-// The main job with the weights that ship, as a user starts it: of the first path's plans the one
-// with most lifting grasps is taken on. A plan with more of them has been tried before, in vain.
-TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
+// The main job with the weights that ship, as a user starts it: of the first path's plans those are
+// tried that hold in the most changed worlds or in one less, and of these the one with most lifting
+// grasps is taken on. A plan with more of them has been tried before, in vain.
+TEST(MainJobTest, TheRulerIsGraspedByARobustPlanWithMostLiftingGrasps) {
   const TestFolder temporary;
   const fs::path& folder = temporary.path();
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
@@ -285,16 +297,27 @@ TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
       return step.stage() == "motion" && run.FindBefore<CertifyFacts>(step) == plan;
     });
   };
-  int certified = 0;
+  const auto has_grasps = [&](const CertifyFacts* plan) {
+    return std::any_of(run.steps.begin(), run.steps.end(), [&](const StepFacts& step) {
+      return step.stage() == "grasp" && run.FindBefore<CertifyFacts>(step) == plan;
+    });
+  };
+  int certified = 0, completed = 0;
   for (const StepFacts& step : run.steps) {
     const auto* plan = std::get_if<CertifyFacts>(&step.details);
     if (plan == nullptr || !plan->certified || plan->path != taken->path) continue;
     ++certified;
+    if (!has_grasps(plan)) {
+      EXPECT_LE(plan->robust->held, taken->robust->held + 1) << step.id;
+      continue;
+    }
+    ++completed;
     if (plan == taken || has_motion(plan)) continue;
     EXPECT_LE(CountLifting(run, plan), CountLifting(run, taken)) << step.id;
   }
   EXPECT_GE(certified, 2);
-  EXPECT_LE(certified, RunConfig().plans);
+  EXPECT_GE(completed, 1);
+  EXPECT_LE(completed, RunConfig().plans);
 
   // The same run as an animation and as a scene of MRPT's; what fits neither is one line.
   const auto show = [&](std::vector<std::string> arguments) {

@@ -1,6 +1,7 @@
-// replay_runs DIR..: the lifts of run directories (scene.json, lift.csv) in MuJoCo: a line each
-// with this project's verdict and MuJoCo's, and how many of them agree, those within 20 % of a
-// limit counted apart.
+// replay_runs DIR..: run directories in MuJoCo: how far from its end here the push ends there
+// (scene.json, rollout.csv), and this project's verdict on the lift and MuJoCo's (lift.csv); then
+// how many pushes end within 2 cm and 10 degrees, and how many verdicts agree, those within 20 % of
+// a limit counted apart.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -13,17 +14,37 @@
 namespace pregrasp {
 namespace {
 
+constexpr double kTimeStep = 2.5e-4;  // [s]
+constexpr double kNear = 0.02;        // [m]
+constexpr double kNearTurn = 10.0;    // [degrees]
+
 struct Tally {
+  int near = 0, far = 0;
   int agree = 0, differ = 0, close = 0;
 
   void Add(const std::filesystem::path& directory) {
     const Scene scene = LoadScene(directory / "scene.json");
-    const std::vector<ReplayRow> rows = ReadReplayTable(directory / "lift.csv", scene);
-    const ReplayResult result = ReplayInMujoco(scene, rows, 2.5e-4);
+    fmt::print("{}: ", directory.string());
+    AddPush(scene, ReadReplayTable(directory / "rollout.csv", scene));
+    AddLift(scene, ReadReplayTable(directory / "lift.csv", scene));
+  }
+
+ private:
+  void AddPush(const Scene& scene, const std::vector<ReplayRow>& rows) {
+    const RigidTransform here = rows.back().X_WB.front();
+    const RigidTransform there = ReplayInMujoco(scene, rows, kTimeStep).X_WO.back();
+    const double shift = (there.translation() - here.translation()).norm();
+    const double turn_deg = RadToDeg(RotationAngle(here.linear(), there.linear()));
+    ++(shift <= kNear && turn_deg <= kNearTurn ? near : far);
+    fmt::print("push {:.1f} mm, {:.1f} degrees apart; ", 1e3 * shift, turn_deg);
+  }
+
+  void AddLift(const Scene& scene, const std::vector<ReplayRow>& rows) {
+    const ReplayResult result = ReplayInMujoco(scene, rows, kTimeStep);
     const ReplayVerdict here = JudgeReplay(rows, ObjectPoses(rows), -1);
     const ReplayVerdict there = JudgeReplay(rows, result.X_WO, result.touching_body);
-    fmt::print("{}: here {} ({:.1f} mm, {:.1f} degrees), MuJoCo {} ({:.1f} mm, {:.1f} degrees)\n",
-               directory.string(), here.held ? "held" : "lost", 1e3 * here.shift, here.turn_deg,
+    fmt::print("lift here {} ({:.1f} mm, {:.1f} degrees), MuJoCo {} ({:.1f} mm, {:.1f} degrees)\n",
+               here.held ? "held" : "lost", 1e3 * here.shift, here.turn_deg,
                there.held ? "held" : "lost", 1e3 * there.shift, there.turn_deg);
     if (here.is_close || there.is_close) {
       ++close;
@@ -44,7 +65,11 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
   }
-  fmt::print("{} agree, {} differ, {} are close to a limit\n", tally.agree, tally.differ,
-             tally.close);
+  fmt::print(
+      "pushes: {} end within {:.0f} cm and {:.0f} degrees, {} do not; lifts: {} agree, {} differ, "
+      "{} "
+      "are close to a limit\n",
+      tally.near, 1e2 * pregrasp::kNear, pregrasp::kNearTurn, tally.far, tally.agree, tally.differ,
+      tally.close);
   return tally.differ == 0 ? 0 : 1;
 }
