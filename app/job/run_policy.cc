@@ -170,10 +170,9 @@ class Runner {
     const std::vector<TriedPlan> plans = CertifyPlans(optimised, name);
     const Node* best = plans.front().end;
     auto next = plans.begin();
-    const auto last = next + std::min<std::ptrdiff_t>(config_.plans, std::ssize(plans));
-    while (next != last && best->progress.reached != Progress::Reached::kOk) {
+    while (next != plans.end() && best->progress.reached != Progress::Reached::kOk) {
       // Together: plans that hold in at most one world less than the first.
-      const auto end = std::find_if(next, last, [&](const TriedPlan& plan) {
+      const auto end = std::find_if(next, plans.end(), [&](const TriedPlan& plan) {
         return plan.worlds_held() < next->worlds_held() - 1;
       });
       const Node& moved = TryTogether(optimised, {next, end}, name);
@@ -184,20 +183,20 @@ class Runner {
     return ok ? ShowFrames(timeline_, *best) : *best;
   }
 
-  // The path's plans, certified: those first that hold in the most worlds, of equally many the one
-  // that costs least; only the first if none is certified.
+  // Of the path's plans those that cost least, as many as are to be tried, certified: those first
+  // that hold in the most worlds; only the best, which is not certified, if none is. Not all of a
+  // path's plans: what moves the object little holds everywhere, and leads to no grasp.
   std::vector<TriedPlan> CertifyPlans(const Node& optimised, const std::string& name) {
     const auto count = std::ssize(timeline_.GetState(optimised)->optimization->plans);
     std::vector<TriedPlan> plans;
-    for (int plan = 1; plan <= count; ++plan) {
+    std::optional<TriedPlan> first;
+    for (int plan = 1; plan <= count && std::ssize(plans) < config_.plans; ++plan) {
       Report(name + ", plans", plan - 1, static_cast<int>(count));
-      plans.push_back(CertifyPlan(optimised, plan, nlohmann::json::object()));
+      const TriedPlan certified = CertifyPlan(optimised, plan, nlohmann::json::object());
+      if (!first) first = certified;
+      if (certified.facts().certified) plans.push_back(certified);
     }
-    const TriedPlan first = plans.front();
-    plans.erase(std::remove_if(plans.begin(), plans.end(),
-                               [](const TriedPlan& plan) { return !plan.facts().certified; }),
-                plans.end());
-    if (plans.empty()) return {first};
+    if (plans.empty()) return {*first};
     std::stable_sort(plans.begin(), plans.end(), [](const TriedPlan& a, const TriedPlan& b) {
       return a.worlds_held() > b.worlds_held();
     });

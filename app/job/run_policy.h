@@ -16,9 +16,9 @@ struct RunConfig {
   int paths = 10;    ///< full optimisations at most, of kPaths (design: the budget)
   bool all = false;  ///< go on to the last path after the first success
   int motions = 6;   ///< lifting grasps of one path whose hand motion is tried
-  /// Of one path's certified plans, their ends differing, those whose grasps are tried: the ones
-  /// that hold in the most changed worlds first, together with those that hold in one less. Of
-  /// plans tried together the one with most lifting grasps is taken on.
+  /// Of one path that are certified, their ends differing. Grasps are tried of those that hold in
+  /// the most changed worlds or in one less, of the others where that leads nowhere. Of plans tried
+  /// together the one with most lifting grasps is taken on.
   int plans = 4;
   /// Of the planner, by full name, from the graph on; where they are those of the job, none.
   nlohmann::json settings = nlohmann::json::object();

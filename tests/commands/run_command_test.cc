@@ -187,7 +187,8 @@ constexpr char kSameAsRun[] = R"lua(
       while o:step() do end
       local certified = {}
       for plan = 1, 8 do  -- as many as differ
-        local is_one, t = pcall(o.certify, o, {}, plan)
+        local is_one, t
+        if #certified < 4 then is_one, t = pcall(o.certify, o, {}, plan) end
         if not is_one then break end
         if t.certified then certified[#certified + 1] = { plan = plan, t = t, held = t.robust.held } end
       end
@@ -196,9 +197,9 @@ constexpr char kSameAsRun[] = R"lua(
         return a.plan < b.plan
       end)
       local next = 1
-      while not done and next <= math.min(#certified, 4) do
+      while not done and next <= #certified do
         local first, least = nil, certified[next].held - 1
-        while next <= math.min(#certified, 4) and certified[next].held >= least do
+        while next <= #certified and certified[next].held >= least do
           local x = certified[next]
           x.grasps = x.t:grasps {}
           local a, b = x.grasps, first and first.grasps
@@ -299,7 +300,8 @@ TEST(MainJobTest, TheRulerIsGraspedByARobustPlanWithMostLiftingGrasps) {
   };
   const auto has_grasps = [&](const CertifyFacts* plan) {
     return std::any_of(run.steps.begin(), run.steps.end(), [&](const StepFacts& step) {
-      return step.stage() == "grasp" && run.FindBefore<CertifyFacts>(step) == plan;
+      return std::holds_alternative<GraspFacts>(step.details) &&
+             run.FindBefore<CertifyFacts>(step) == plan;
     });
   };
   int certified = 0, completed = 0;
@@ -316,8 +318,8 @@ TEST(MainJobTest, TheRulerIsGraspedByARobustPlanWithMostLiftingGrasps) {
     EXPECT_LE(CountLifting(run, plan), CountLifting(run, taken)) << step.id;
   }
   EXPECT_GE(certified, 2);
+  EXPECT_LE(certified, RunConfig().plans);
   EXPECT_GE(completed, 1);
-  EXPECT_LE(completed, RunConfig().plans);
 
   // The same run as an animation and as a scene of MRPT's; what fits neither is one line.
   const auto show = [&](std::vector<std::string> arguments) {
