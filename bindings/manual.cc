@@ -261,7 +261,11 @@ std::vector<std::string> Manual::Search(const std::string& text) const {
   std::vector<std::string> names;
   for (const std::string& name : order_) {
     const ManualEntry& entry = entries_.at(name);
-    if (mentions(name + ' ' + entry.text)) names.push_back(name);
+    std::string text = name + ' ' + entry.text + ' ' + entry.result;
+    if (entry.is_function()) {
+      for (const auto& part : entry.parts) text += ' ' + part.name + ' ' + part.text;
+    }
+    if (mentions(text)) names.push_back(name);
     if (entry.is_function()) continue;
     for (const auto& part : entry.parts) {
       const std::string full = name + '.' + part.name;

@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "app/core/error.h"
+#include "app/core/text.h"
 #include "app/job/apply_stages.h"
 #include "app/job/motion_measure.h"
 #include "app/job/start_verdict.h"
@@ -20,7 +23,8 @@ void SettleStart(Application& a) {
           "to settle before anything is planned or simulated", "a later step");
   const double seconds = CommandOptions(a.command).Number("seconds");
   if (!(seconds > 0.0 && seconds <= kLongestSettle)) {
-    throw InputError("", "seconds", "above 0 and at most 300 s", std::to_string(seconds));
+    throw InputError("", "seconds", fmt::format("above 0 and at most {} s", kLongestSettle),
+                     FormatDouble(seconds));
   }
   const SettleResult result = Settle(a.job.world(), a.next.start, seconds);
   a.next.start.t = 0.0;

@@ -46,10 +46,13 @@ std::size_t Beside(const std::vector<T>& values) {
 std::size_t CalcBytes(const StepFacts& facts) {
   const std::size_t details =
       std::visit([](const auto& of_stage) { return Beside(of_stage); }, facts.details);
+  return sizeof(StepFacts) + 2 * kCommandBytes + Beside(facts.bodies) + Beside(facts.fingers) +
+         Beside(facts.contacts) + details;
+}
+
+std::size_t CalcPastBytes(const StepFacts& facts) {
   const auto* simulated = std::get_if<SimulationFacts>(&facts.details);
-  const std::size_t past = simulated == nullptr ? 0 : kPhysicsStepBytes * simulated->physics_steps;
-  return past + sizeof(StepFacts) + 2 * kCommandBytes + Beside(facts.bodies) +
-         Beside(facts.fingers) + Beside(facts.contacts) + details;
+  return simulated == nullptr ? 0 : kPhysicsStepBytes * simulated->physics_steps;
 }
 
 }  // namespace pregrasp

@@ -6,8 +6,11 @@
 
 namespace pregrasp {
 
-/// What the facts of a step hold, about [bytes]; with those of a simulation by hand, the physics
-/// steps that it took.
+/// What the facts of a step hold, about [bytes].
 std::size_t CalcBytes(const StepFacts& facts);
+
+/// What the physics steps hold that an action of a simulation by hand took, about [bytes]; 0 of any
+/// other step.
+std::size_t CalcPastBytes(const StepFacts& facts);
 
 }  // namespace pregrasp

@@ -46,10 +46,11 @@ void DropIdleSettings(nlohmann::json& options, const PlannerConfig& config) {
   }
 }
 
-// Of the steps that follow one, that whose action begins as the one asked for and goes on for as
-// many physics steps or more; null where nothing says how many it is to have.
+// Of the steps that follow one, done before that of `number`, that whose action begins as the one
+// asked for and goes on for as many physics steps or more; null where nothing says how many it is
+// to have.
 const Timeline::Node* FindWhole(const std::vector<const Timeline::Node*>& children,
-                                const Command& command) {
+                                const Command& command, int number) {
   const char* const kStopped = "stopped_after";
   const auto stopped = command.options.find(kStopped);
   if (stopped == command.options.end() || !stopped->is_number_integer()) return nullptr;
@@ -60,7 +61,7 @@ const Timeline::Node* FindWhole(const std::vector<const Timeline::Node*>& childr
   const nlohmann::json asked = without(command.options);
   for (const Timeline::Node* child : children) {
     const auto* facts = std::get_if<SimulationFacts>(&child->facts.details);
-    if (facts != nullptr && child->command.verb == command.verb &&
+    if (child->number < number && facts != nullptr && child->command.verb == command.verb &&
         facts->physics_steps >= stopped->get<int>() && without(child->command.options) == asked) {
       return child;
     }
@@ -137,6 +138,15 @@ Applied Timeline::TimedApply(const std::shared_ptr<const JobState>& state,
   return applied;
 }
 
+Applied Timeline::ApplyAfter(const Node& from, const std::shared_ptr<const JobState>& state,
+                             const Command& command, int number) const {
+  const auto children = children_.find(&from);
+  const Node* whole =
+      children == children_.end() ? nullptr : FindWhole(children->second, command, number);
+  if (whole == nullptr) return TimedApply(state, command);
+  return internal::ApplyPart(job_, state, command, *GetState(*whole)->simulation);
+}
+
 const Timeline::Node* Timeline::FindChild(const Node& from, const Command& command) const {
   const auto children = children_.find(&from);
   if (children == children_.end()) return nullptr;
@@ -166,8 +176,15 @@ const Timeline::Node& Timeline::Add(const Node* parent, Applied applied) {
 
 const Timeline::Node& Timeline::Insert(std::unique_ptr<Node> node) {
   facts_bytes_ += CalcBytes(node->facts);
+  if (node->parent != nullptr) {
+    std::vector<const Node*>& siblings = children_[node->parent];
+    // Part of another action has its past in common with that.
+    if (FindWhole(siblings, node->command, node->number) == nullptr) {
+      facts_bytes_ += CalcPastBytes(node->facts);
+    }
+    siblings.push_back(node.get());
+  }
   by_id_[node->facts.id] = node.get();
-  if (node->parent != nullptr) children_[node->parent].push_back(node.get());
   nodes_.push_back(std::move(node));
   if (listener_) listener_(*nodes_.back());
   return *nodes_.back();
@@ -213,11 +230,8 @@ const Timeline::Node& Timeline::Do(const Node& from, Verb verb, nlohmann::json o
   DropIdleSettings(options, state->config);
   const Command command{verb, from.id(), std::move(options)};
   if (const Node* known = FindChild(from, command)) return Pass(*known);
-  if (const Node* whole = FindWhole(children_[&from], command)) {
-    return Pass(
-        Commit(from, internal::ApplyPart(job_, state, command, *GetState(*whole)->simulation)));
-  }
-  return Pass(Commit(from, TimedApply(state, command)));
+  const int number = static_cast<int>(nodes_.size()) + 1;
+  return Pass(Commit(from, ApplyAfter(from, state, command, number)));
 }
 
 Applied Timeline::Try(const Node& from, Verb verb, const nlohmann::json& options) const {
@@ -245,7 +259,7 @@ const Timeline::Node& Timeline::Find(const std::string& id) const {
 std::shared_ptr<const JobState> Timeline::GetState(const Node& node) const {
   if (auto kept = states_.Find(node.number)) return kept;
   PREGRASP_CHECK(node.parent != nullptr);
-  Applied applied = TimedApply(GetState(*node.parent), node.command);
+  Applied applied = ApplyAfter(*node.parent, GetState(*node.parent), node.command, node.number);
   if (node.recorded_tolerance) {
     applied.facts.id = node.id();  // which branch it is on is the record's to say
     RequireSame(applied.facts, node.facts, *node.recorded_tolerance);

@@ -91,6 +91,10 @@ class Timeline : public FactsSource {
   const Node& Add(const Node* parent, Applied applied);
   std::string FreeId(const std::string& id, const Node* parent) const;
   Applied TimedApply(const std::shared_ptr<const JobState>& state, const Command& command) const;
+  // Does the command of node `number` to `from`: of an action that was stopped, by what was done
+  // of the whole of it before.
+  Applied ApplyAfter(const Node& from, const std::shared_ptr<const JobState>& state,
+                     const Command& command, int number) const;
   const Node& Insert(std::unique_ptr<Node> node);
   const Node& Pass(const Node& node);
 

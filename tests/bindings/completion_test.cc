@@ -108,6 +108,8 @@ TEST_F(PromptTest, HelpFindsOptionsOverlaysAndWords) {
   EXPECT_NE(manual.Explain("Overlay").find("friction cones"), std::string::npos);
   const std::vector<std::string> found = manual.Search("friction cone");
   EXPECT_NE(std::find(found.begin(), found.end(), "Overlay.cones"), found.end());
+  EXPECT_EQ(manual.Search("prune a node at a time"),
+            (std::vector<std::string>{"Graph:prune_step"}));
   EXPECT_TRUE(manual.Search("zebra").empty());
 }
 

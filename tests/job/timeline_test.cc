@@ -219,6 +219,27 @@ TEST_F(TimelineTest, AnActionThatIsStoppedIsTakenFromTheWholeOfItTheSame) {
   }
 }
 
+TEST_F(TimelineTest, WhatPartsOfAnActionShareWithItCountsOnceAndStaysShared) {
+  const auto job = MakeJob();
+  Timeline timeline(*job);
+  constexpr int kSteps = 500;
+  const Node& whole = timeline.Do(timeline.root(), Verb::kWait, {{"steps", kSteps}});
+  const std::size_t before = timeline.held_bytes();
+  const Node* part = nullptr;
+  for (int stopped_after = 1; stopped_after <= 100; ++stopped_after) {
+    part = &timeline.Do(timeline.root(), Verb::kWait,
+                        {{"steps", kSteps}, {"stopped_after", stopped_after}});
+  }
+  EXPECT_LT(timeline.held_bytes() - before, 100U * 10000U);  // 16 MB if none were shared
+  // Of so many that the states of the first ones are dropped, a part is taken from the whole again.
+  const WorldState* const first = &timeline.GetState(*part)->simulation->state();
+  const Node* node = &timeline.root();
+  for (int i = 0; i < 1600; ++i) node = &timeline.Do(*node, Verb::kLetGo, {{"finger", "index"}});
+  EXPECT_NE(&timeline.GetState(*part)->simulation->state(), first);
+  EXPECT_EQ(&timeline.GetState(*part)->simulation->state(),
+            &timeline.GetState(whole)->simulation->state_at(100));
+}
+
 TEST_F(TimelineTest, RestoredStepsAreDoneWhenTheirStateIsAskedForAndGoOnAsTheFirstDid) {
   const auto job = MakeJob(), other_job = MakeJob();
   Timeline first(*job), second(*other_job);
