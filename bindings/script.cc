@@ -14,8 +14,9 @@
 #include "bindings/lua_run.h"
 #include "bindings/lua_scene.h"
 #include "bindings/lua_session.h"
+#include "bindings/lua_study.h"
 #include "bindings/sandbox.h"
-#include "bindings/scene_file.h"
+#include "bindings/scene_argument.h"
 
 namespace pregrasp {
 namespace {
@@ -33,6 +34,10 @@ struct OpenOptions {
 };
 
 }  // namespace
+
+fs::path WeightsFolder(const ScriptConfig& config) {
+  return config.weights.empty() ? DataFolder() / "assets" / "weights" : config.weights;
+}
 
 // set = { ["fingertips.friction"] = 0.5, ["object.p"] = {0, 0, 0.1} }
 std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields) {
@@ -77,60 +82,9 @@ struct LuaValue<OpenOptions> {
 
 namespace {
 
-// A scene: the name of a file, what scene{..} gave, or its table.
-struct SceneArgument {
-  std::optional<std::string> file;
-  Scene scene;
-};
-
-}  // namespace
-
-template <>
-struct LuaValue<SceneArgument> {
-  static SceneArgument Read(lua_State* L, int index, const std::string& path) {
-    if (lua_type(L, index) == LUA_TSTRING) {
-      return {LuaValue<std::string>::Read(L, index, path), {}};
-    }
-    if (!lua_istable(L, index) && !IsScene(L, index)) {
-      throw InputError("", path, "a scene file's name or a scene", DescribeValue(L, index));
-    }
-    return {std::nullopt, ReadScene(L, index)};
-  }
-};
-
-namespace {
-
-// A scene's file. Where there is none of that name, the error names the nearest of the folders
-// "scenes".
-fs::path FindScene(Machine& machine, const std::string& name) {
-  try {
-    return machine.files().FindForReading(name);
-  } catch (const InputError& error) {
-    if (error.got() != "nothing of that name") throw;
-    std::vector<std::string> stems;
-    for (const fs::path& folder : {fs::path("scenes"), DataFolder() / "scenes"}) {
-      std::error_code none;
-      for (const auto& entry : fs::directory_iterator(folder, none)) {
-        if (entry.path().extension() == ".lua") stems.push_back(entry.path().stem());
-      }
-    }
-    std::sort(stems.begin(), stems.end());
-    const std::string nearest = FindNearest(fs::path(name).stem().string(), stems);
-    if (nearest.empty()) throw;
-    throw InputError(error.where(), error.field(), error.expected(),
-                     error.got() + " (did you mean \"scenes/" + nearest + ".lua\"?)");
-  }
-}
-
 std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions& options) {
   const ScriptContext& context = ScriptContext::Of(L);
-  Machine& machine = Machine::Of(L);
-  Scene scene = std::move(argument.scene);
-  if (argument.file) {
-    scene = LoadSceneFile(FindScene(machine, *argument.file), options.settings);
-  } else {
-    FinishScene(scene, machine.script_folder(), options.settings);
-  }
+  Scene scene = LoadScene(L, std::move(argument), options.settings);
   SessionConfig config;
   ApplyPlannerSettings(config.planner, options.settings);
   RequireNoSettingsLeft(options.settings, PlannerRoots());
@@ -140,8 +94,7 @@ std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions
   config.threads = options.threads.value_or(context.config.threads);
   config.pictures = context.config.pictures;
   config.command = context.config.remake;
-  config.weights =
-      context.config.weights.empty() ? DataFolder() / "assets" / "weights" : context.config.weights;
+  config.weights = WeightsFolder(context.config);
   constexpr int kSessionKib = 2000;
   CountMemory(L, kSessionKib);
   MemoryClaim claim = ClaimMemory(L, std::size_t{kSessionKib} << 10U);
@@ -152,13 +105,8 @@ std::shared_ptr<Session> Open(lua_State* L, SceneArgument& argument, OpenOptions
 
 // What there is to say of a scene, be it such that no session of it can be opened.
 Pushed CheckArgument(lua_State* L, SceneArgument& argument) {
-  Machine& machine = Machine::Of(L);
   std::vector<Setting> none;
-  if (argument.file) {
-    return PushCheck(L, LoadSceneFile(FindScene(machine, *argument.file), none));
-  }
-  FinishScene(argument.scene, machine.script_folder(), none);
-  return PushCheck(L, argument.scene);
+  return PushCheck(L, LoadScene(L, std::move(argument), none));
 }
 
 const std::vector<FunctionInfo>& SceneFunctions() {
@@ -174,6 +122,7 @@ Api MakeApi() {
   for (const FunctionInfo& constructor : SceneConstructors()) api.functions.push_back(&constructor);
   for (const FunctionInfo& function : GraspFunctions()) api.functions.push_back(&function);
   for (const FunctionInfo& function : RunFunctions()) api.functions.push_back(&function);
+  for (const FunctionInfo& function : StudyFunctions()) api.functions.push_back(&function);
   for (const FunctionInfo& function : TimelineFunctions()) api.functions.push_back(&function);
   for (const FunctionInfo* function : api.functions) module.keys.push_back(function->name);
   api.module = &module;
@@ -185,7 +134,7 @@ Api MakeApi() {
        {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas(), GraspSchemas(),
         StageOptionSchemas(), GraphSchemas(), TrajectorySchemas(), GraspStageSchemas(),
         MotionSchemas(), EventSchemas(), ReasonSchemas(), RolloutSchemas(), TimelineSchemas(),
-        WhatIfSchemas(), PlanSchemas()}) {
+        WhatIfSchemas(), PlanSchemas(), StudySchemas()}) {
     api.schemas.insert(api.schemas.end(), schemas.begin(), schemas.end());
   }
   return api;

@@ -25,6 +25,9 @@ struct ScriptConfig {
   std::string remake;             ///< the command line itself, for the footer of pictures
 };
 
+/// Of the networks' weights.
+std::filesystem::path WeightsFolder(const ScriptConfig& config);
+
 /// Runs a Lua script. Recordings that are open at its end are finished; when it was interrupted,
 /// they are finished with status "interrupted"; when it failed, with status "failed" and its error.
 /// @throws InputError with one line; Interrupted; InternalError.

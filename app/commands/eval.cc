@@ -95,16 +95,6 @@ std::vector<Loaded> LoadAll(const std::vector<fs::path>& files,
   return loaded;
 }
 
-void RequireDistinct(const std::vector<Scene>& scenes) {
-  std::vector<std::string> names;
-  for (const Scene& scene : scenes) {
-    if (std::find(names.begin(), names.end(), scene.name) != names.end()) {
-      throw InputError("--scenes", "", "scenes of different names", "\"" + scene.name + "\" twice");
-    }
-    names.push_back(scene.name);
-  }
-}
-
 EvalConfig MakeConfig(const EvalOptions& options) {
   EvalConfig config;
   config.study = options.study;
@@ -145,7 +135,6 @@ EvalConfig MakeConfig(const EvalOptions& options) {
   } else {
     setup.scenes = LoadAll<Scene>(FindFiles(options.scenes, DataFolder() / "scenes"), settings,
                                   setup.planner, LoadSceneFile);
-    RequireDistinct(setup.scenes);
   }
   return config;
 }
@@ -194,7 +183,9 @@ void AddEval(const Subcommand& app, Action& action) {
       "run was cut off");
   eval.Add("--study", options->study, StudyHelp()).ShowDefault();
   eval.Add("--scenes", options->scenes, "all, or names or files with commas between").ShowDefault();
-  eval.Add("--seeds", options->seeds, "Seeds of each scene").Within({1, 10'000, 1}).ShowDefault();
+  eval.Add("--seeds", options->seeds, "Seeds of each scene")
+      .Within(StudySetup::kSeeds)
+      .ShowDefault();
   eval.AddSeed("--first-seed", options->first_seed, "The first of them");
   eval.Add("--shard", options->shard, "i/n: make every n-th item, from the i-th").ShowDefault();
   eval.Add("--out", options->out, "Folder of the results");

@@ -1,6 +1,7 @@
 #include "app/studies/eval.h"
 
 #include <cstdlib>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -115,11 +116,44 @@ void RequireRules(const StudySetup& setup) {
   };
   for (const Scene& scene : setup.scenes) require_scene(scene);
   for (const Ladder& ladder : setup.ladders) require_scene(ladder.scene);
-  require("--set", RuleDepartures(setup.planner));  // of a study without scenes
+  require("settings", RuleDepartures(setup.planner));  // of a study without scenes
+}
+
+void RequireDistinct(const std::vector<Scene>& scenes) {
+  std::set<std::string> names;
+  for (const Scene& scene : scenes) {
+    if (names.insert(scene.name).second) continue;
+    throw InputError("", "scenes", "scenes of different names", "\"" + scene.name + "\" twice");
+  }
 }
 
 nlohmann::json ReadItem(const fs::path& file) {
   return ParseJson(ReadWholeFile(file), file.string());
+}
+
+// A whole study: shards that are put together.
+struct WholeStudy {
+  std::string name, description;
+  std::vector<std::string> texts;  // of the items, in their order
+  std::vector<nlohmann::json> items;
+};
+
+WholeStudy ReadWholeStudy(const std::vector<fs::path>& folders) {
+  std::vector<fs::path> sources;
+  sources.reserve(folders.size());
+  for (const fs::path& folder : folders) sources.push_back(folder / "items");
+  const ItemFolders from(sources, kStudyItemExtension, "study");
+  const nlohmann::json json =
+      ParseJson(from.description(), (sources[0] / "description.json").string());
+  const JsonReader fields(json, sources[0].string());
+  WholeStudy study{fields["study"].Text(), from.description(), {}, {}};
+  const auto count = static_cast<std::int64_t>(fields["items"].Number());
+  for (std::int64_t i = 0; i < count; ++i) {
+    const fs::path item = from.Find(i);
+    study.texts.push_back(ReadWholeFile(item));
+    study.items.push_back(ParseJson(study.texts.back(), item.string()));
+  }
+  return study;
 }
 
 void WriteTables(const StudyInfo& study, const std::vector<nlohmann::json>& items,
@@ -133,6 +167,7 @@ bool RunEval(const EvalConfig& config, const std::function<void(const EvalProgre
   config.shard.Validate();
   config.setup.planner.Validate();
   config.setup.run.Validate();
+  RequireDistinct(config.setup.scenes);
   RequireRules(config.setup);
   const StudyInfo& info = FindStudy(config.study);
   const std::unique_ptr<Study> study = info.make(config.setup);
@@ -165,26 +200,17 @@ bool RunEval(const EvalConfig& config, const std::function<void(const EvalProgre
   return true;
 }
 
+std::vector<nlohmann::json> ReadEval(const fs::path& folder) {
+  return ReadWholeStudy({folder}).items;
+}
+
 void MergeEval(const std::vector<fs::path>& folders, const fs::path& out) {
-  std::vector<fs::path> sources;
-  sources.reserve(folders.size());
-  for (const fs::path& folder : folders) sources.push_back(folder / "items");
-  const ItemFolders from(sources, kStudyItemExtension, "study");
-  const nlohmann::json description =
-      ParseJson(from.description(), (sources[0] / "description.json").string());
-  const JsonReader fields(description, sources[0].string());
-  const StudyInfo& info = FindStudy(fields["study"].Text());
-  const auto count = static_cast<std::int64_t>(fields["items"].Number());
-  std::vector<nlohmann::json> items;
-  std::vector<std::string> texts;
-  for (std::int64_t i = 0; i < count; ++i) {
-    const fs::path file = from.Find(i);
-    texts.push_back(ReadWholeFile(file));
-    items.push_back(ParseJson(texts.back(), file.string()));
+  const WholeStudy study = ReadWholeStudy(folders);
+  const ItemFolder folder(out / "items", study.description, kStudyItemExtension);
+  for (std::size_t i = 0; i < study.texts.size(); ++i) {
+    WriteWholeFile(folder.PathOf(static_cast<std::int64_t>(i)), study.texts[i]);
   }
-  const ItemFolder folder(out / "items", from.description(), kStudyItemExtension);
-  for (std::int64_t i = 0; i < count; ++i) WriteWholeFile(folder.PathOf(i), texts[i]);
-  WriteTables(info, items, out);
+  WriteTables(FindStudy(study.name), study.items, out);
 }
 
 }  // namespace pregrasp

@@ -38,6 +38,10 @@ struct EvalProgress {
 /// difference; Interrupted.
 bool RunEval(const EvalConfig& config, const std::function<void(const EvalProgress&)>& progress);
 
+/// The items of a study of which all are there, in their order.
+/// @throws InputError if one is missing.
+std::vector<nlohmann::json> ReadEval(const std::filesystem::path& folder);
+
 /// Puts the items of shards together at `out`, with the tables: the same files as one run's, but
 /// for seconds.
 /// @throws InputError if the folders' descriptions differ, or an item is missing.

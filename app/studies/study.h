@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/core/number_range.h"
 #include "app/job/planner.h"
 #include "app/job/run_policy.h"
 #include "app/studies/ladder.h"
@@ -18,6 +19,8 @@ namespace pregrasp {
 
 /// What a study is of: everything that decides its items, and how they are made.
 struct StudySetup {
+  static constexpr NumberRange kSeeds{1, 10'000, 1};
+
   std::vector<Scene> scenes;    ///< loaded, in the order of the tables; of a study of scenes
   std::vector<Ladder> ladders;  ///< of a study of ladders
   int seeds = 3;                ///< of each scene or ladder, or in all, from first_seed on

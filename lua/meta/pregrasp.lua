@@ -26,6 +26,24 @@
 ---| "rollouts" # planning: where plans leave the object
 ---| "hand" # planning: the whole hand
 
+---What break_when can wait for by name: break_when{"slip", "new_best"} stops at whichever comes first.
+---@alias Condition
+---| "contact_made" # physics: two bodies, or a fingertip and the object, begin to touch
+---| "contact_lost" # physics: they no longer do
+---| "slip" # physics: the friction of a fingertip that stuck comes to its limit
+---| "penetration" # physics: two bodies overlap by more than 0.1 mm
+---| "new_best" # an iteration found a cheaper plan than all before
+---| "score_drop" # the end of the best plan scores less than that of the one before
+---| "path_switched" # the search goes on with another path
+---| "search_ended" # a path's iterations are done: by want of progress, or at their limit
+---| "certified" # a plan is certified
+---| "certify_failed" # a plan is not, and why
+---| "ik_failed" # no hand pose was found for a grasp whose forces are fine, or for a frame
+---| "grasp_found" # a grasp is feasible
+---| "lifted" # a lift is held
+---| "lift_failed" # a lift is not held, and why
+---| "loosened" # a keyframe or frame gave up a demand
+
 ---@class pregrasp
 ---@field version string the program's version
 ---@field seed integer of everything random: --seed
@@ -96,6 +114,23 @@ function pregrasp.compare(a, b) end
 ---@param dir string
 ---@return Session # and the object at the step where it stood
 function pregrasp.load_state(dir) end
+
+---A study of many scenes and seeds, as `pregrasp eval`: makes the items that are missing in its folder, and the tables there.
+---Cut off, the same call goes on. What departs from the project's rules is refused.
+---@param options EvalOptions
+---@return table[] # the items in their order, as the study's JSON has them, null as nil: of table1 a row each scene and seed
+function pregrasp.eval(options) end
+
+---@class EvalOptions
+---@field dir string "out/.."
+---@field study? "table1"|"ladder"|"learning"|"ik-order" "table1"
+---@field scenes? (string|Scene|SceneTable)[] one or more; of ladder and learning the files of ladders, of ik-order none
+---@field seeds? integer of each scene or ladder, or in all, 3
+---@field first_seed? integer 1
+---@field paths? integer to optimise at most, 10
+---@field set? table<string, number|string|boolean|Vector3> changes values of every scene, and the planner's: { ["fingertips.friction"] = 0.5 }
+---@field threads? integer of each item; cannot change a result
+---@field keep_runs? boolean each item's run directory in DIR/runs; false
 
 ---A finished run, read back. What its files say is given as it is there; whether it is true is for `pregrasp verify` to say.
 ---@param dir string a run directory
@@ -283,10 +318,8 @@ function Session:record(options) end
 ---From now on the function sees the events of every physics step of the session's simulations and certificates, and of every
 ---step of the planner: it is asked after each action, in the order of its steps. Where it first says yes, a simulation's
 ---action ended there, and what takes several steps (run, next_stage) stops there; `stopped` says where. In place of a
----function, names of conditions, any of which will do: "contact_made", "contact_lost", "slip" (a fingertip that stuck),
----"penetration" (over 0.1 mm); "new_best", "score_drop" (of the best plan's end), "path_switched", "search_ended",
----"certified", "certify_failed", "ik_failed", "grasp_found", "lifted", "lift_failed", "loosened". nil takes it back.
----@param predicate? (fun(event: Event): boolean?)|string|string[]
+---function, names of conditions, any of which will do. nil takes it back.
+---@param predicate? Condition|Condition[]|(fun(event: Event): boolean?)
 function Session:break_when(predicate) end
 
 ---@class Stop
@@ -332,7 +365,7 @@ function Session:shot(options) end
 ---@field legend? boolean true: what colours mean
 ---@field footer? boolean true: the line at the bottom
 ---@field font_scale? number 1: size of all type, 0.3 to 4
----@field file? string "out/..": drawn now, outside of the run directory
+---@field file? string "out/NAME.png": drawn now, outside of the run directory
 
 ---Writes the run directory with all steps so far: at `dir`, or the one that is recorded to.
 ---@param dir? string "out/.."
@@ -401,7 +434,7 @@ local Plan = {}
 ---@return boolean # false when it has ended
 function Plan:step(steps) end
 
----Takes steps to the end, to a step, or to where break_when says yes.
+---Takes steps to the end, to a step, or to where break_when says yes; goes to a step that was taken, also back.
 ---@param to? string the id of a step
 ---@return boolean # true when break_when stopped it
 function Plan:run(to) end
