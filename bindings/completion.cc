@@ -4,6 +4,7 @@
 #include <array>
 #include <set>
 
+#include "app/job/planner_settings.h"
 #include "bindings/help.h"
 #include "bindings/manual.h"
 #include "bindings/protect.h"
@@ -159,8 +160,46 @@ std::set<std::string> Options(lua_State* L, const Tokens& tokens) {
   return words;
 }
 
-// What may be in the quotes that open at the end: the values of `key =`, or of its list.
+// What the first argument of the call that begins at the end may be, `f"`, `x:f("` or `f{ "`: a
+// word of its type, or the id of a step.
+std::set<std::string> Arguments(lua_State* L, const Tokens& tokens) {
+  std::size_t end = FindOpenBrace(tokens);
+  if (end > 0 && tokens[end - 1].text == "(") --end;
+  if (end == 0 || !PushChain(L, tokens, end)) return {};
+  const ManualEntry* function = Manual::Get().Find(FindManualName(L, lua_gettop(L)));
+  if (function == nullptr || function->parts.empty()) return {};
+  const ManualEntry::Part& first = function->parts.front();
+  const std::vector<std::string> values = Manual::Get().ValuesOf(first.type);
+  std::set<std::string> words(values.begin(), values.end());
+  if (first.name == "id" && first.type == "string" && end >= 3 && tokens[end - 2].text == ":" &&
+      PushChain(L, tokens, end - 2)) {
+    lua_pushliteral(L, "ids");
+    if (!Enter(L) || !lua_istable(L, -1)) return words;
+    for (const std::string& id : LuaValue<std::vector<std::string>>::Read(L, lua_gettop(L), "")) {
+      words.insert(id);
+    }
+  }
+  return words;
+}
+
+// Whether a key of a table `set = {` begins at the end, as `["`.
+bool IsSettingsKey(Tokens tokens) {
+  if (tokens.empty() || tokens.back().text != "[") return false;
+  tokens.pop_back();
+  const std::size_t brace = FindOpenBrace(tokens);
+  return brace < tokens.size() && brace >= 2 && tokens[brace - 1].text == "=" &&
+         tokens[brace - 2].text == "set";
+}
+
+// What may be in the quotes that open at the end: the values of `key =`, or of its list; a
+// setting's full name; an argument.
 std::set<std::string> Values(lua_State* L, Tokens tokens) {
+  if (IsSettingsKey(tokens)) {
+    std::set<std::string> names;
+    for (const PlannerSetting& setting : SettingsTable()) names.insert(setting.name);
+    return names;
+  }
+  if (std::set<std::string> words = Arguments(L, tokens); !words.empty()) return words;
   if (!tokens.empty() && tokens.back().text != "=") {
     const std::size_t brace = FindOpenBrace(tokens);
     tokens.resize(std::min(brace, tokens.size()));

@@ -94,6 +94,13 @@ TEST_F(PromptTest, CompletesTheValuesOfAnOption) {
   EXPECT_EQ(Complete("s:record{ dir = \"out/x\", pictures = \"no"), "no> none");
   EXPECT_EQ(Complete("s:record{ pictures = '"), "> all key none");
   EXPECT_EQ(Complete("sim:touch({ finger = \"in"), "in> index");
+  EXPECT_EQ(Complete("s:break_when 'contact"), "contact> contact_lost contact_made");
+  EXPECT_EQ(Complete("s:break_when({ 'slip', \"loos"), "loos> loosened");
+  EXPECT_EQ(Complete("s:go 'sim."), "sim.> sim.1 sim.2");
+  EXPECT_EQ(Complete("x = s:step('sim.2"), "sim.2> sim.2");
+  EXPECT_EQ(Complete("s:what_if{ set = { ['mppi.final"), "mppi.final> mppi.final_sigma");
+  EXPECT_EQ(Complete("s:plan{ paths = 1, set = { ['mppi.sigma'] = 1, [\"paths.o"),
+            "paths.o> paths.order");
   EXPECT_EQ(Complete("s:shot{ overlay = { \"forces\", \"co"), "co> cones contacts");
   EXPECT_EQ(Complete("s:shot{ caption = \"x"), "x>");
 }
@@ -142,8 +149,8 @@ TEST_F(PromptTest, ShowsAListOfRecordsAsATable) {
 }
 
 TEST_F(PromptTest, ShowsPlainValuesInALineAndCutsLongLists) {
-  EXPECT_EQ(Show("1 / 3"), "0.333333");
-  EXPECT_EQ(Show("-0.0"), "0");
+  EXPECT_EQ(Show("1 / 3"), "0.33333333333333");
+  EXPECT_EQ(Show("{1 / 3, -0.0}"), "{0.3333, 0}");
   EXPECT_EQ(Show("nil"), "nil");
   EXPECT_EQ(Show("'a text'"), "a text");
   EXPECT_EQ(Show("{}"), "{}");

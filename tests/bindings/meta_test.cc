@@ -13,6 +13,7 @@
 #include "bindings/manual.h"
 #include "bindings/planner_options.h"
 #include "bindings/script.h"
+#include "tests/bindings/lua_text.h"
 
 namespace pregrasp {
 namespace {
@@ -123,6 +124,27 @@ TEST(MetaTest, TheOverlaysOfTheManualAreThoseOfPictures) {
     ADD_FAILURE() << "it was taken";
   } catch (const InputError& error) {
     EXPECT_EQ(error.expected(), "some of " + names);
+  }
+}
+
+TEST(MetaTest, TheConditionsOfTheManualAreThoseOfBreakWhen) {
+  const ManualEntry* condition = Manual::Get().Find("Condition");
+  ASSERT_NE(condition, nullptr);
+  std::string names;
+  for (const auto& part : condition->parts) {
+    EXPECT_FALSE(part.text.empty()) << part.name;
+    names += (names.empty() ? "" : ", ") + part.name;
+  }
+  const TestFolder folder;
+  const auto script = folder.Write(
+      "test.lua", "local s = require 'pregrasp'.open 'scenes/ruler.lua' s:break_when 'nothing'");
+  try {
+    RunScript(script, {}, {});
+    ADD_FAILURE() << "it was taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("expected one of " + names + ", got"),
+              std::string::npos)
+        << error.what();
   }
 }
 
