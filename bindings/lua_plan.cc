@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "app/core/interrupt.h"
+#include "app/core/text.h"
 #include "app/job/run_summary.h"
 #include "bindings/lua_planner.h"
 
@@ -76,7 +77,27 @@ bool PlanStep(lua_State* L, LuaPlan& plan, const std::optional<int>& steps) {
   return plan.place.steps > before;
 }
 
+// Refuses what is no step's id in any run, before a minute is spent on the way to it.
+void RequireStepOfARun(const std::string& id) {
+  const std::string first = id.substr(0, id.find('.'));
+  for (const char* word : {"scene", "graph", "paths", "path", "motion"}) {
+    if (first == word && first != id) return;
+  }
+  throw InputError("", "to", "the id of a step of a run, as \"path.1.mppi.3\"",
+                   '"' + OneLine(id) + '"');
+}
+
 bool PlanRun(lua_State* L, LuaPlan& plan, const std::optional<std::string>& to) {
+  if (to) {
+    RequireStepOfARun(*to);
+    // One that was taken is gone to.
+    const auto before = [&](const RunPlace& place) { return place.node->id() != *to; };
+    const RunPlace taken = TakeRunSteps(plan.session->timeline(), plan.config, plan.ahead, before);
+    if (taken.node != nullptr && taken.node->id() == *to) {
+      plan.place = taken;
+      return false;
+    }
+  }
   if (plan.place.result) return false;
   return TakeSteps(L, plan, std::numeric_limits<int>::max(),
                    [&](const RunPlace& place) { return to && place.node->id() == *to; });

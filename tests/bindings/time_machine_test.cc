@@ -233,27 +233,30 @@ TEST_F(TimeMachineTest, AWholeRunIsTakenStepByStepBackAndForth) {
       R"({ paths = 1, set = { ["mesh.triangles"] = 12, ["graph.samples"] = 1, ["screen.paths"] = 1,
           ["mppi.samples"] = 6, ["mppi.iterations"] = 2, ["graph.top_percent"] = 20, ["grasps.samples"] = 1,
           ["grasps.search_sets"] = 0, ["grasps.max_solves"] = 1, ["grasps.starts"] = 1 } })";
-  EXPECT_EQ(
-      Script("local s = session() local plan = s:plan" + options + R"(
+  EXPECT_EQ(Script("local s = session() local plan = s:plan" + options + R"(
     print(plan, plan:why().verdict, plan:step(), plan.step_id)
     print(plan:step(2), plan.step_id, plan.num_steps)
     plan:run "path.1.mppi.1" print(plan.step_id, plan:object().best_cost ~= nil)
     local count = plan.num_steps
     plan:back(4) print(plan.num_steps == count - 4) plan:forward(4) print(plan.step_id)
+    plan:run "graph.score" print(plan.num_steps, plan:run "path.1.mppi.1", plan.num_steps == count, plan.finished)
+    print(select(2, pcall(plan.run, plan, "foo")):match("to: .*"), plan.num_steps == count)
     s:break_when "search_ended" print(plan:run(), plan.step_id)
     s:break_when(nil) plan:next_stage() plan:run()
     print(plan.finished, plan.status == plan:why().verdict, plan:step(), #plan.reasons)
     local whole = session():plan)" +
-             options + R"( whole:run()
+                   options + R"( whole:run()
     print(whole.num_steps == plan.num_steps, whole.end_id == plan.end_id, pg.compare(plan, whole).verdict)
     print(s:why().verdict == plan.status)
     local path = tonumber(plan.end_id:match "%d+")
     print(plan:why_not(path).verdict, plan:why_not(path).text == s:why_not(path).text)
     local never = plan:why_not(9999) print(never.verdict, never.text:find("Path 9999 was not tried", 1, true) ~= nil)
     print(never.items[1].value, never.items[#never.items].name, (pcall(plan.why_not, plan, 0))))"),
-      "Plan(1 step)\topen\ttrue\tscene.verdict\ntrue\tgraph.score\t3\npath.1.mppi.1\ttrue\n"
-      "true\npath.1.mppi.1\ntrue\tpath.1.mppi.2\ntrue\ttrue\tfalse\t1\ntrue\ttrue\tsame\ntrue\n"
-      "same\ttrue\nworse\ttrue\nnil\tlifting\tfalse\n");
+            "Plan(1 step)\topen\ttrue\tscene.verdict\ntrue\tgraph.score\t3\npath.1.mppi.1\ttrue\n"
+            "true\npath.1.mppi.1\n3\tfalse\ttrue\tfalse\n"
+            "to: expected the id of a step of a run, as \"path.1.mppi.3\", got \"foo\"\ttrue\n"
+            "true\tpath.1.mppi.2\ntrue\ttrue\tfalse\t1\ntrue\ttrue\tsame\ntrue\n"
+            "same\ttrue\nworse\ttrue\nnil\tlifting\tfalse\n");
 }
 
 TEST_F(TimeMachineTest, ACheckIsOfTheSceneAndOfOneThatCannotBeOpened) {
