@@ -77,6 +77,10 @@ ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::stri
 void TakeShot(lua_State* L, Session& session, const Timeline::Node& node,
               const ShotOptions& options) {
   if (options.file) {
+    if (std::filesystem::path(*options.file).extension() != ".png") {
+      throw InputError("", "file", "the name of a picture, \"out/NAME.png\"",
+                       '"' + OneLine(*options.file) + '"');
+    }
     session.ShootToFile(node, options.shot,
                         Machine::Of(L).files().ResolveForWriting(*options.file));
   } else {

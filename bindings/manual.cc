@@ -261,11 +261,11 @@ std::vector<std::string> Manual::Search(const std::string& text) const {
   std::vector<std::string> names;
   for (const std::string& name : order_) {
     const ManualEntry& entry = entries_.at(name);
-    std::string text = name + ' ' + entry.text + ' ' + entry.result;
+    std::string all = name + ' ' + entry.text + ' ' + entry.result;
     if (entry.is_function()) {
-      for (const auto& part : entry.parts) text += ' ' + part.name + ' ' + part.text;
+      for (const auto& part : entry.parts) all += ' ' + part.name + ' ' + part.text;
     }
-    if (mentions(text)) names.push_back(name);
+    if (mentions(all)) names.push_back(name);
     if (entry.is_function()) continue;
     for (const auto& part : entry.parts) {
       const std::string full = name + '.' + part.name;

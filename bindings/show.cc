@@ -322,8 +322,8 @@ std::string ShowValue(lua_State* L, int index, int width) {
   OpenProxy(L);
   const int value = lua_gettop(L);
   std::string text;
-  if (lua_type(L, value) == LUA_TSTRING) {
-    text = lua_tostring(L, value);
+  if (lua_type(L, value) == LUA_TSTRING || lua_type(L, value) == LUA_TNUMBER) {
+    text = ShowText(L, value);  // a number alone with all its digits, as print gives it
   } else if (const auto array = FindArray(L, value); array && array->count > 0) {
     PushArrayTable(L, *array, kMostRows);
     text = ShowList(L, lua_gettop(L), array->count, width);

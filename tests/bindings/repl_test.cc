@@ -74,6 +74,7 @@ TEST(ReplPipeTest, TheFirstErrorIsOneLineWithItsLineAndEndsIt) {
 TEST(ReplPipeTest, PrintShowsWhatAnExpressionDoesAndASentenceWhole) {
   const TestFolder folder;
   EXPECT_EQ(Pipe("print({1, 2}, 'a', 1.5)\n", folder).out, "{1, 2}\ta\t1.5\n");
+  EXPECT_EQ(Pipe("print(s.dt)\n", folder).out, Pipe("s.dt\n", folder).out);
   const std::string shown = Pipe("s:check()\n", folder).out;
   EXPECT_EQ(shown, Pipe("print(s:check())\n", folder).out);
   EXPECT_EQ(shown.rfind("Check\nclean: at rest, no overlaps\n", 0), 0U) << shown;

@@ -340,6 +340,8 @@ TEST(SessionBindingTest, WrongCallsSayWhatWasExpected) {
        "shot: quality: expected \"draft\", \"normal\" or \"still\", got \"best\""},
       {"open():shot{ overlay = {'force'} }",
        "shot: overlay: expected some of forces, cones, contacts, trace, ghost, fingers, axes, "},
+      {"open():shot{ file = 'out/x.jpg' }",
+       "shot: file: expected the name of a picture, \"out/NAME.png\", got \"out/x.jpg\""},
       {"open():shot{ font_scale = 9 }", "shot: font_scale: expected a number from 0.3 to 4, got 9"},
       {"open():shot{ size = {1, 2, 3} }",
        "shot: size: expected {width, height} in pixels, got a table"},
