@@ -5,6 +5,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/core/text.h"
 #include "app/hand/certificate.h"
 #include "app/hand/ik_residuals.h"
@@ -61,6 +62,7 @@ class Searcher {
   Search Run(Rng& rng) {
     Search search;
     while (search.starts < terms_.config.max_starts && !search.solved) {
+      ThrowIfInterrupted();
       point_.configuration = NextStart(search.starts++, rng);
       Attempt(&search);
     }

@@ -134,6 +134,7 @@ class IkSolver {
   IkSolver(IkSolver&&) noexcept;
 
   /// @param rng  of stream kIk, keyed by what the problem is for.
+  /// @throws Interrupted between starts.
   IkResult Solve(const IkConfig& config, const IkProblem& problem, Rng rng) const;
 
   /// The measures of Solve's result for a given configuration, and whether it is a solution.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/core/error.h"
+#include "app/core/interrupt.h"
 #include "app/hand/certificate.h"
 #include "app/hand/solvable_problem.h"
 #include "tests/hand/dense_check.h"
@@ -91,6 +92,15 @@ TEST(IkTest, IsAFunctionOfItsArguments) {
   EXPECT_EQ(first.q, second.q);
   EXPECT_EQ(first.X_WH.matrix(), second.X_WH.matrix());
   EXPECT_NE(first.q, other.q);
+}
+
+TEST(IkTest, AnInterruptEndsItBetweenStarts) {
+  Rng rng(5);
+  const SolvableProblem solvable = MakeSolvableProblem(IkObject::kBox, 5, true, rng);
+  const IkSolver solver(ShadowHand(), solvable.pointers());
+  RequestInterrupt();
+  EXPECT_THROW(solver.Solve({}, solvable.problem, Rng(3, RngStream::kTest)), Interrupted);
+  ClearInterrupt();
 }
 
 TEST(IkTest, ReachesATenthOfAMillimetreNearlyAlways) {
