@@ -170,6 +170,7 @@ function pregrasp.cylinder(size) end
 ---@return Shape
 function pregrasp.capsule(size) end
 
+---A sphere about its centre: sphere{r} or sphere{r = ..}.
 ---@param size SphereTable|number[]
 ---@return Shape
 function pregrasp.sphere(size) end
@@ -292,7 +293,7 @@ function Session:settle(options) end
 
 ---@class SettleResult
 ---@field moved_mm number the furthest that a centre of mass was from its start
----@field rotated_deg number
+---@field rotated_deg number the most that a body turned
 ---@field at_rest boolean under 1 mm and 0.5 deg
 ---@field body string that moved furthest
 ---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
@@ -557,12 +558,12 @@ function Session:graph(options) end
 -- and triangles are those of pictures and log, from 0: triangle t is mesh.triangles[t + 1].
 
 ---@class Graph
----@field stage "meshed"|"scored"|"pruned_context"|"pruned_free"|"connected"
+---@field stage "meshed"|"scored"|"pruned_context"|"pruned_free"|"connected" how far it is: context is cut by s_c, free by s_n
 ---@field step_id string
 ---@field num_triangles integer
 ---@field num_nodes integer ordered pairs of triangles: thumb, index
 ---@field num_edges integer 0 before it is connected
----@field top_percent number
+---@field top_percent number how many of the nodes each score keeps
 ---@field nodes Array|ContactState[] all of them with their scores: node id is nodes[id + 1]
 ---@field initial integer[] ids of the nodes that a path may begin with
 ---@field kept integer[] ids of all kept nodes
@@ -679,7 +680,7 @@ function Graph:shot(options) end
 
 ---@class Reason
 ---@field text string the sentence
----@field verdict "not_scored"|"scored"|"kept_by_context"|"kept_by_free"|"kept_by_both"|"pruned"
+---@field verdict "not_scored"|"scored"|"kept_by_context"|"kept_by_free"|"kept_by_both"|"pruned" context is s_c, free is s_n
 ---@field kept boolean
 ---@field id integer
 ---@field node ContactState
@@ -755,7 +756,7 @@ function Path:shot(options) end
 ---@field settings table<string, number|string|boolean> of the next iteration, as OptimizeOptions
 ---@field converged boolean it ended for want of progress, not at the limit of iterations
 ---@field best_history number[] best_cost after each iteration
----@field mean_history number[]
+---@field mean_history number[] mean_cost after each iteration
 ---@field path_rank integer
 ---@field step_id string
 local Optimizer = {}
@@ -784,13 +785,13 @@ function Optimizer:set_nominal(number) end
 function Optimizer:screen(options) end
 
 ---@class Screening
----@field round integer
+---@field round integer of screening this path, from 1
 ---@field iterations integer of this round
 ---@field rollouts integer
 ---@field value number of the best plan so far: its reward less what a certificate refuses
 ---@field rest_reward number of doing nothing
----@field score_scale number
----@field best CostTerms
+---@field score_scale number as Optimizer.score_scale
+---@field best CostTerms of the best plan so far
 ---@field step_id string
 
 ---Takes iterations back.
@@ -852,21 +853,21 @@ function Optimizer:shot(options) end
 
 ---A plan's cost: minus its reward, plus penalties that are zero for a plan that does nothing wrong.
 ---@class CostTerms
----@field total number
+---@field total number the penalties less the reward: what a rollout is ranked by
 ---@field stage_scores number[] at the start of each stage
 ---@field final_score number how graspable the object is after the hold
 ---@field room number for grasps there: of contact sets that hold, those that the surroundings leave free
 ---@field reward number the sum of these, a stage's start counting at most as much as the end
----@field no_contact number
----@field slip number
----@field effort number
----@field unrest number
----@field speed number
----@field tip_overlap number
----@field tip_spacing number
----@field hold number
----@field haste number
----@field fall number
+---@field no_contact number penalty: no finger ever touches
+---@field slip number tie-breaker: share of the contact time at the friction cone's limit
+---@field effort number tie-breaker: mean force over the largest one allowed
+---@field unrest number tie-breaker: speed when the hold ends
+---@field speed number tie-breaker: peak speed of the object above 0.35 m/s
+---@field tip_overlap number penalty: a fingertip is within the surroundings
+---@field tip_spacing number penalty: two fingertips overlap
+---@field hold number penalty: the object moves in the hold
+---@field haste number penalty: a fingertip that touches is faster than a hand can be
+---@field fall number penalty: the object falls out of the scene
 
 ---@class Rollout
 ---@field number integer
@@ -931,9 +932,9 @@ function Optimizer:shot(options) end
 ---@field reasons string[] why not; empty if it is
 ---@field slow number how many times as long as planned its stages and transfers take
 ---@field hold_shift_mm number how far the object moves in the hold
----@field hold_turn_deg number
+---@field hold_turn_deg number how far it turns
 ---@field step_shift_mm number between the final positions at the full and at half the time step
----@field step_turn_deg number
+---@field step_turn_deg number between the final orientations
 ---@field max_penetration_mm number between bodies
 ---@field not_converged integer physics steps whose contact forces were not found to the solver's tolerance
 ---@field unresolved_mm number how far bodies may have sunk into each other in such steps, at the full or at half the time step
@@ -947,8 +948,8 @@ function Optimizer:shot(options) end
 ---@field robust Robustness? nil unless it is certified
 ---@field num_steps integer
 ---@field stays_when_released boolean under 10 mm and 5 deg in 1 s without fingers
----@field released_shift_mm number
----@field released_turn_deg number
+---@field released_shift_mm number how far it moves in that second
+---@field released_turn_deg number how far it turns
 ---@field pressing GraspContact[] that press at its end; every grasp keeps them unless the object stays without
 ---@field stages PlanStage[] what the fingers do
 ---@field object Body at its end

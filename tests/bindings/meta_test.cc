@@ -110,6 +110,15 @@ TEST(MetaTest, OptionsOfThePlannersStagesSayWhatTheTableOfSettingsSays) {
           "half's costs, 1e-06 to 1e+06; 0.5"));
 }
 
+TEST(MetaTest, SaysOfEveryFunctionAndCostTermWhatItIs) {
+  for (const auto& [name, entry] : Manual::Get().entries()) {
+    if (entry.is_function()) EXPECT_FALSE(entry.text.empty()) << name;
+  }
+  for (const auto& part : Manual::Get().Find("CostTerms")->parts) {
+    EXPECT_FALSE(part.text.empty()) << part.name;
+  }
+}
+
 TEST(MetaTest, TheOverlaysOfTheManualAreThoseOfPictures) {
   std::string names;
   const ManualEntry* overlay = Manual::Get().Find("Overlay");
