@@ -691,7 +691,7 @@ function Graph:shot(options) end
 
 ---Paths by rank: paths[1] is the best; nil beyond the last.
 ---@class Paths
----@field count number how many there are
+---@field count number how many there are, with those that a filter passes over
 ---@field stages integer
 ---@field order "explore"|"paper"
 local Paths = {}

@@ -112,7 +112,7 @@ TEST(MetaTest, OptionsOfThePlannersStagesSayWhatTheTableOfSettingsSays) {
 
 TEST(MetaTest, SaysOfEveryFunctionAndCostTermWhatItIs) {
   for (const auto& [name, entry] : Manual::Get().entries()) {
-    if (entry.is_function()) EXPECT_FALSE(entry.text.empty()) << name;
+    EXPECT_FALSE(entry.is_function() && entry.text.empty()) << name;
   }
   for (const auto& part : Manual::Get().Find("CostTerms")->parts) {
     EXPECT_FALSE(part.text.empty()) << part.name;

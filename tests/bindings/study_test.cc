@@ -100,5 +100,16 @@ TEST_F(StudyScriptTest, WrongCallsSayWhatWasExpected) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out/x"));
 }
 
+TEST_F(StudyScriptTest, ALinkInItsFolderCannotLeadOutOfTheOutput) {
+  std::filesystem::create_directories(folder_.path() / "out/linked");
+  std::filesystem::create_directories(folder_.path() / "elsewhere");
+  std::filesystem::create_directory_symlink(folder_.path() / "elsewhere",
+                                            folder_.path() / "out/linked/items");
+  EXPECT_EQ(Failure("pg.eval{ dir = 'out/linked', scenes = { 'scenes/ruler.lua' } }"),
+            "eval: out/linked/items: expected a path in the output folder (\"out/..\"), got one "
+            "elsewhere");
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "elsewhere"));
+}
+
 }  // namespace
 }  // namespace pregrasp
