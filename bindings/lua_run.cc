@@ -7,13 +7,18 @@
 
 #include "app/core/json_text.h"
 #include "app/core/text.h"
+#include "app/page/pair.h"
 #include "app/recording/checked_file.h"
 #include "app/recording/manifest.h"
-#include "bindings/function.h"
+#include "bindings/lua_session.h"
 #include "bindings/machine.h"
 
 namespace pregrasp {
 namespace {
+
+const Schema kRunStripOptions{
+    "RunStripOptions",
+    {"against", "file", "camera", "size", "quality", "overlay", "legend", "font_scale"}};
 
 // A finished run. Of its steps the places of their lines are kept, not what they say.
 struct LuaRun {
@@ -57,6 +62,33 @@ template <>
 struct LuaClass<LuaRun> {
   static const ClassInfo& info() { return RunClass(); }
   static const Session* session(const LuaRun& /*run*/) { return nullptr; }
+};
+
+namespace {
+
+struct RunStripOptions {
+  std::vector<std::string> ids;
+  std::shared_ptr<LuaRun> against;
+  Shot shot;
+  std::string file;
+};
+
+}  // namespace
+
+template <>
+struct LuaValue<RunStripOptions> {
+  static RunStripOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    const Fields fields(L, index, kRunStripOptions, "", "", kMostOfAStrip);
+    RunStripOptions options;
+    ReadStrip(L, fields, options.shot, options.file);
+    options.against = fields.Find<std::shared_ptr<LuaRun>>("against").value_or(nullptr);
+    for (int i = 1;; ++i) {
+      const auto id =
+          fields.Positional<std::optional<std::string>>(i, "[" + std::to_string(i) + "]");
+      if (!id) return options;
+      options.ids.push_back(*id);
+    }
+  }
 };
 
 namespace {
@@ -112,6 +144,30 @@ Pushed RunManifest(lua_State* L, LuaRun& run) {
   PushJson(L, run.manifest);
   return {1};
 }
+void RunShot(lua_State* L, LuaRun& run, const std::string& id, const ShotOptions& options) {
+  if (!options.file) throw InputError("", "file", "where the picture goes", "nothing");
+  const LoadedRun loaded = LoadRun(run.directory);
+  const StepFacts& step = loaded.Get(id);
+  options.shot.config.Validate();
+  PictureDrawer drawer(loaded.scene, LabelsOf(loaded));
+  drawer.Draw(step, loaded, options.shot, PictureFile(L, *options.file));
+}
+
+// Steps side by side, the key ones where none are named; with `against` those of two runs.
+void RunStrip(lua_State* L, LuaRun& run, const RunStripOptions& options) {
+  const std::filesystem::path file = PictureFile(L, options.file);
+  const LoadedRun loaded = LoadRun(run.directory);
+  const std::optional<Vector3> view;
+  if (options.against) {
+    const LoadedRun other = LoadRun(options.against->directory);
+    WritePng(DrawPairOfRuns(loaded, other, options.ids, options.shot, view), file);
+  } else if (!options.ids.empty()) {
+    WritePng(DrawStripOfRun(loaded, options.ids, options.shot, view), file);
+  } else {
+    WritePng(DrawContactSheet(loaded, options.shot, view), file);
+  }
+}
+
 std::vector<std::string> RunIds(LuaRun& run) { return run.ids; }
 
 int RunToString(lua_State* L) {
@@ -128,10 +184,14 @@ const std::vector<FunctionInfo>& RunFunctions() {
   return functions;
 }
 
+std::vector<const Schema*> RunSchemas() { return {&kRunStripOptions}; }
+
 const ClassInfo& RunClass() {
   static const ClassInfo info{"Run",
                               {
+                                  Query<&RunShot>("shot", "id, options"),
                                   Query<&RunStep>("step", "id"),
+                                  Query<&RunStrip>("strip", "options"),
                               },
                               {
                                   Property<&RunIds>("ids"),

@@ -8,6 +8,8 @@
 #include "app/core/text.h"
 #include "app/geometry/contact_mesh.h"
 #include "app/job/check.h"
+#include "app/page/pair.h"
+#include "app/recording/partial_directory.h"
 #include "bindings/lua_planner.h"
 #include "bindings/lua_scene.h"
 #include "bindings/machine.h"
@@ -26,6 +28,9 @@ const Schema kRecordOptions{"RecordOptions", {"dir", "pictures"}};
 const Schema kShotOptions{"ShotOptions",
                           {"caption", "camera", "size", "quality", "overlay", "file", "card",
                            "legend", "footer", "font_scale"}};
+const Schema kStripOptions{
+    "StripOptions",
+    {"against", "file", "camera", "size", "quality", "overlay", "legend", "font_scale"}};
 const Schema kBody{"Body", {"name", "movable", "p", "q", "rpy_deg", "v", "w"}};
 const Schema kCloudOptions{"CloudOptions", {"points"}};
 const Schema kMeshOptions{"MeshOptions", {"triangles"}};
@@ -46,14 +51,14 @@ Vector3 CalcRpyDeg(const Matrix3& R) {
 
 }  // namespace
 
-ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
-  const Fields fields(L, index, kShotOptions, "", "", 1);
-  ShotOptions options;
-  PictureConfig& picture = options.shot.config;
-  picture.trace = true;
-  options.shot.title = fields.Positional<std::optional<std::string>>(1, "title").value_or("");
-  options.shot.caption = fields.Optional<std::string>("caption", "");
-  options.file = fields.Find<std::string>("file");
+std::filesystem::path PictureFile(lua_State* L, const std::string& file) {
+  const std::filesystem::path path = Machine::Of(L).files().ResolveForWriting(file);
+  RequireOutsideRuns(path);
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
+  return path;
+}
+
+void ReadPicture(lua_State* L, const Fields& fields, PictureConfig& picture) {
   if (fields.Has("camera")) picture.camera = ReadCamera(L, fields, "camera");
   if (const auto size = fields.Find<std::vector<int>>("size")) {
     if (size->size() != 2) fields.Refuse("size", "{width, height} in pixels");
@@ -66,11 +71,29 @@ ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::stri
   if (const auto overlays = fields.Find<std::vector<std::string>>("overlay")) {
     SetOverlays(picture, *overlays);
   }
-  picture.card = fields.Optional<bool>("card", true);
   picture.legend = fields.Optional<bool>("legend", true);
-  picture.footer = fields.Optional<bool>("footer", true);
   picture.font_scale = fields.Optional<double>("font_scale", 1.0);
   RequireWithin("", "font_scale", PictureConfig::kFontScale, picture.font_scale);
+}
+
+void ReadStrip(lua_State* L, const Fields& fields, Shot& shot, std::string& file) {
+  shot.config.width = 1920;
+  shot.config.height = 1440;
+  ReadPicture(L, fields, shot.config);
+  shot.config.Validate();
+  file = fields.Required<std::string>("file");
+}
+
+ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
+  const Fields fields(L, index, kShotOptions, "", "", 1);
+  ShotOptions options;
+  options.shot.config.trace = true;
+  ReadPicture(L, fields, options.shot.config);
+  options.shot.title = fields.Positional<std::optional<std::string>>(1, "title").value_or("");
+  options.shot.caption = fields.Optional<std::string>("caption", "");
+  options.file = fields.Find<std::string>("file");
+  options.shot.config.card = fields.Optional<bool>("card", true);
+  options.shot.config.footer = fields.Optional<bool>("footer", true);
   return options;
 }
 
@@ -164,6 +187,17 @@ struct RecordOptions {
   std::string directory;
   PictureMode pictures = PictureMode::kKey;
 };
+// An id of the session's, or an object.
+struct StripEntry {
+  std::string id;
+  std::optional<AnyPlace> place;
+};
+struct StripOptions {
+  std::vector<StripEntry> entries;
+  std::optional<AnyPlace> against;
+  Shot shot;
+  std::string file;
+};
 struct CloudOptions {
   int points = 512;
 };
@@ -193,6 +227,32 @@ struct LuaValue<RecordOptions> {
     const Fields fields(L, index, kRecordOptions);
     return {fields.Required<std::string>("dir"),
             ParsePictureMode(fields.Optional<std::string>("pictures", "key"), "", "pictures")};
+  }
+};
+
+template <>
+struct LuaValue<StripEntry> {
+  static StripEntry Read(lua_State* L, int index, const std::string& path) {
+    if (lua_type(L, index) == LUA_TSTRING) {
+      return {LuaValue<std::string>::Read(L, index, path), std::nullopt};
+    }
+    return {"", LuaValue<AnyPlace>::Read(L, index, path)};
+  }
+};
+
+template <>
+struct LuaValue<StripOptions> {
+  static StripOptions Read(lua_State* L, int index, const std::string& /*path*/) {
+    const Fields fields(L, index, kStripOptions, "", "", kMostOfAStrip);
+    StripOptions options;
+    ReadStrip(L, fields, options.shot, options.file);
+    options.against = fields.Find<AnyPlace>("against");
+    for (int i = 1;; ++i) {
+      const auto entry =
+          fields.Positional<std::optional<StripEntry>>(i, "[" + std::to_string(i) + "]");
+      if (!entry) return options;
+      options.entries.push_back(*entry);
+    }
   }
 };
 
@@ -265,6 +325,35 @@ void SessionShot(lua_State* L, Session& session, const ShotOptions& options) {
   TakeShot(L, session, session.timeline().last(), options);
 }
 
+// Steps side by side; with `against` what led to one of them beside what led to the other.
+void SessionStrip(lua_State* L, const std::shared_ptr<Session>& session,
+                  const StripOptions& options) {
+  const Timeline& timeline = session->timeline();
+  std::vector<AnyPlace> places;
+  for (const StripEntry& entry : options.entries) {
+    places.push_back(entry.place ? *entry.place : AnyPlace{session, &timeline.Find(entry.id)});
+  }
+  if (places.empty()) places.push_back({session, &timeline.last()});
+  if (options.against && places.size() > 1) {
+    throw InputError("", "against", "one step to set it against",
+                     fmt::format("{} steps", places.size()));
+  }
+  const std::filesystem::path file = PictureFile(L, options.file);
+  if (session->config().pictures == PictureMode::kNone) return;
+  const auto end_of = [](const AnyPlace& place) {
+    return BranchEnd{place.session->timeline(), *place.node, place.session->drawer()};
+  };
+  if (options.against) {
+    WritePng(DrawPairOfBranches(end_of(places[0]), end_of(*options.against), options.shot), file);
+    return;
+  }
+  std::vector<StripStep> steps;
+  for (const AnyPlace& place : places) {
+    steps.push_back({&place.node->facts, &place.session->timeline(), &place.session->drawer()});
+  }
+  WritePng(DrawStrip(steps, options.shot, std::nullopt), file);
+}
+
 Pushed SessionBody(lua_State* L, Session& session, const std::string& name) {
   PushBody(L, session.world(), session.GetStart(), FindBody(session.scene(), name));
   return {1};
@@ -319,6 +408,7 @@ const ClassInfo& SessionClass() {
                                   Method<&SessionRecord>("record", "options"),
                                   Query<&SessionBreakWhen>("break_when", "predicate"),
                                   Method<&SessionShot>("shot", "options"),
+                                  Method<&SessionStrip>("strip", "options"),
                                   Method<&SessionSave>("save", "dir"),
                                   Query<&SessionBody>("body", "name"),
                                   Query<&SessionCloud>("cloud", "options"),
@@ -351,9 +441,9 @@ const ClassInfo& SessionClass() {
 }
 
 std::vector<const Schema*> SessionSchemas() {
-  return {&kSettleOptions, &kSettleResult, &kVerdict, &kSimulateOptions,
-          &kRecordOptions, &kShotOptions,  &kBody,    &kCloudOptions,
-          &kMeshOptions,   &kCheck,        &kFinding};
+  return {&kSettleOptions, &kSettleResult, &kVerdict,      &kSimulateOptions,
+          &kRecordOptions, &kShotOptions,  &kStripOptions, &kBody,
+          &kCloudOptions,  &kMeshOptions,  &kCheck,        &kFinding};
 }
 
 }  // namespace pregrasp

@@ -78,6 +78,17 @@ class StandStill {
 /// @returns whether it said yes.
 bool AskFunction(lua_State* L);
 
+/// Reads what a picture shows, from the fields that shot{..} and strip{..} share.
+void ReadPicture(lua_State* L, const Fields& fields, PictureConfig& picture);
+/// Where a picture goes that belongs to no run: what `file` names, in a folder that is there.
+/// @throws InputError for a place among a run's files.
+std::filesystem::path PictureFile(lua_State* L, const std::string& file);
+
+/// The most steps of a strip, which are its list's entries.
+inline constexpr int kMostOfAStrip = 64;
+/// What strip{..} has besides: size, and where it goes.
+void ReadStrip(lua_State* L, const Fields& fields, Shot& shot, std::string& file);
+
 /// What shot{..} takes.
 struct ShotOptions {
   Shot shot;

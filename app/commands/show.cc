@@ -10,10 +10,11 @@
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
 #include "app/core/error.h"
-#include "app/page/contact_sheet.h"
 #include "app/page/film.h"
 #include "app/page/page.h"
+#include "app/page/pair.h"
 #include "app/page/run_steps.h"
+#include "app/page/strip.h"
 #include "app/recording/loaded_run.h"
 #include "app/session/motion_film.h"
 #include "app/session/picture_file.h"
@@ -22,8 +23,8 @@ namespace pregrasp {
 namespace {
 
 struct ShowOptions {
-  std::string run, step, out, size, camera;
-  std::vector<std::string> overlay;
+  std::string run, step, against, out, size, camera;
+  std::vector<std::string> steps, overlay;
   double font_scale = 0.0;  // 0: as the picture has it
   bool no_card = false, no_legend = false, no_footer = false, no_axes = false;
 
@@ -94,6 +95,10 @@ void RefuseFlags(const ShowOptions& options, bool pictures) {
     throw InputError("--step", "", "a picture of the step, --out FILE.png or FILE.3Dscene",
                      options.out);
   }
+  for (const auto& [flag, given] : {std::pair("--steps", !options.steps.empty()),
+                                    std::pair("--against", !options.against.empty())}) {
+    if (given) throw InputError(flag, "", "a picture, --out FILE.png", options.out);
+  }
   if (pictures) return;
   const std::vector<const char*> flags = options.PictureFlags();
   if (!flags.empty()) {
@@ -103,14 +108,16 @@ void RefuseFlags(const ShowOptions& options, bool pictures) {
 }
 
 int ShowStep(const ShowOptions& options) {
+  for (const auto& [flag, given] : {std::pair("--steps", !options.steps.empty()),
+                                    std::pair("--against", !options.against.empty())}) {
+    if (given) throw InputError(flag, "", "no --step beside it", "--step " + options.step);
+  }
   const std::optional<Vector3> view = FindView(options.camera);
   const LoadedRun run = LoadRun(options.run);
   const StepFacts& step = run.Get(options.step);
   Shot shot = FindShot(run.directory, options.step);
   ApplyOptions(options, shot.config);
-  PictureDrawer drawer(run.scene,
-                       {run.summary.seed, run.manifest.value("scene_file", run.scene.name),
-                        run.manifest.value("command", "")});
+  PictureDrawer drawer(run.scene, LabelsOf(run));
   if (options.camera == "run") {
     const RunSteps steps(run);
     std::vector<const StepFacts*> story = steps.FindStory(run.steps.size());
@@ -127,13 +134,22 @@ int ShowStep(const ShowOptions& options) {
   return 0;
 }
 
+// Steps of the run in one picture: of its story, those of --steps, or beside another run's.
 int ShowSheet(const ShowOptions& options) {
   const std::optional<Vector3> view = FindView(options.camera);
   Shot shot;
-  shot.config.width = 1920;
+  shot.config.width = options.against.empty() ? 1920 : 2400;
   shot.config.height = 1440;
   ApplyOptions(options, shot.config);
-  WritePng(DrawContactSheet(LoadRun(options.run), shot, view), options.out);
+  const LoadedRun run = LoadRun(options.run);
+  if (!options.against.empty()) {
+    const LoadedRun other = LoadRun(options.against);
+    WritePng(DrawPairOfRuns(run, other, options.steps, shot, view), options.out);
+  } else if (!options.steps.empty()) {
+    WritePng(DrawStripOfRun(run, options.steps, shot, view), options.out);
+  } else {
+    WritePng(DrawContactSheet(run, shot, view), options.out);
+  }
   return 0;
 }
 
@@ -186,9 +202,17 @@ void AddShow(const Subcommand& app, Action& action) {
   command.Add("--step", options->step,
               "Of a picture: the step's id, as in steps.jsonl: path.1.mppi.5");
   command
+      .Add("--steps", options->steps,
+           "Of a strip: the steps' ids with commas, all by one camera, before,after or more")
+      .CommaSeparated();
+  command.Add("--against", options->against,
+              "Of a pair: another run directory, below the first one step by step, from where they "
+              "first differ to what they came to; with --steps those");
+  command
       .Add("--out", options->out,
-           "FILE.html, the run as a page that explains itself; FILE.png, a picture of the step, or "
-           "without --step a sheet of the run's key steps; FILE.3Dscene, the step for MRPT's "
+           "FILE.html, the run as a page that explains itself; FILE.png, a picture of the step, a "
+           "strip of the steps, a pair of runs, or without these a sheet of the run's key steps; "
+           "FILE.3Dscene, the step for MRPT's "
            "SceneViewer3D; FILE.mp4, .webm or .gif, the hand's motion as a film, by the program "
            "ffmpeg; FILE.glb, the same as binary glTF, for modelling programs and web viewers")
       .Required();

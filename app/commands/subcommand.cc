@@ -55,6 +55,10 @@ Option Option::CommaSeparated(int elements) const {
   return Option(*option_->delimiter(',')->expected(elements));
 }
 
+Option Option::CommaSeparated() const {
+  return Option(*option_->delimiter(',')->allow_extra_args(false));
+}
+
 Subcommand Subcommand::AddCommand(const std::string& name, const std::string& text) const {
   return Subcommand(*app_->add_subcommand(name, text));
 }

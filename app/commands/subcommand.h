@@ -27,6 +27,8 @@ class Option {
   Option OneAtATime() const;
   /// A list of so many elements, which may be one word with commas.
   Option CommaSeparated(int elements) const;
+  /// A list of any length in one word with commas, each time that the option is given.
+  Option CommaSeparated() const;
 
  private:
   CLI::Option* option_;

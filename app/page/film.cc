@@ -13,6 +13,7 @@
 
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/page/strip.h"
 #include "app/recording/checked_file.h"
 #include "app/session/motion_film.h"
 
@@ -140,8 +141,7 @@ void WriteFilm(const LoadedRun& run, const Shot& shot, const std::optional<Vecto
   for (int i = 0; i < static_cast<int>(film.size()); i += every) {
     frames.push_back(FrameStep(run, film, i));
   }
-  PictureDrawer drawer(run.scene,
-                       {run.summary.seed, run.scene.name, run.manifest.value("command", "")});
+  PictureDrawer drawer(run.scene, LabelsOf(run));
   std::vector<const StepFacts*> framed;
   for (std::size_t i = 0; i < frames.size(); i += 10) framed.push_back(&frames[i]);
   framed.push_back(&frames.back());

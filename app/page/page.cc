@@ -13,6 +13,7 @@
 #include "app/page/page_space.h"
 #include "app/page/page_tables.h"
 #include "app/page/run_steps.h"
+#include "app/page/strip.h"
 #include "app/pictures/words.h"
 #include "app/recording/checked_file.h"
 #include "app/session/picture_file.h"
@@ -110,7 +111,7 @@ class Page {
   }
 
   void DrawPictures() {
-    PictureDrawer drawer(run_.scene, {run_.summary.seed, run_.scene.name, ""});
+    PictureDrawer drawer(run_.scene, LabelsOf(run_));
     Shot shot;
     shot.config.width = kPictureWidth;
     shot.config.height = kPictureHeight;
@@ -241,8 +242,8 @@ class Page {
           break;
       }
     }
-    if (const StepFacts* grasp = steps_.FindGrasp()) say(3, *grasp);
-    if (const StepFacts* lift = steps_.FindLift()) say(4, *lift);
+    if (const StepFacts* grasp = FindGrasp(steps_.way())) say(3, *grasp);
+    if (const StepFacts* lift = FindLift(steps_.way())) say(4, *lift);
     if (said.empty() && !Words(steps_.end()).empty()) say(7, steps_.end());
     std::string html;
     for (const auto& [rank, sentence] : said) {

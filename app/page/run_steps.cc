@@ -32,6 +32,35 @@ bool IsByHand(Verb verb) {
 
 }  // namespace
 
+const StepFacts* FindGrasp(const std::vector<const StepFacts*>& way) {
+  int entry = 0;
+  for (const StepFacts* step : way) {
+    if (const auto* frame = std::get_if<FrameFacts>(&step->details)) entry = frame->grasp;
+    if (const auto* motion = std::get_if<MotionFacts>(&step->details)) entry = motion->grasp;
+  }
+  const StepFacts* chosen = nullptr;
+  for (const StepFacts* step : way) {
+    const auto* grasp = std::get_if<GraspFacts>(&step->details);
+    if (grasp == nullptr) continue;
+    const bool better =
+        chosen == nullptr || grasp->feasible || !std::get<GraspFacts>(chosen->details).feasible;
+    if (entry > 0 ? grasp->entry == entry : better) chosen = step;
+  }
+  return chosen;
+}
+
+const StepFacts* FindLift(const std::vector<const StepFacts*>& way) {
+  const StepFacts* grasp = FindGrasp(way);
+  const StepFacts* chosen = nullptr;
+  for (const StepFacts* step : way) {
+    const auto* lift = std::get_if<LiftFacts>(&step->details);
+    if (lift == nullptr) continue;
+    if (grasp != nullptr && lift->grasp == std::get<GraspFacts>(grasp->details).entry) return step;
+    chosen = step;
+  }
+  return chosen;
+}
+
 RunSteps::RunSteps(const LoadedRun& run) : run_(run) {
   if (run.steps.empty()) {
     throw InputError(run.directory.string(), "", "a run with a step at least", "none");
@@ -46,35 +75,6 @@ RunSteps::RunSteps(const LoadedRun& run) : run_(run) {
   std::reverse(way_.begin(), way_.end());
 }
 
-const StepFacts* RunSteps::FindGrasp() const {
-  int entry = 0;
-  for (const StepFacts* step : way_) {
-    if (const auto* frame = std::get_if<FrameFacts>(&step->details)) entry = frame->grasp;
-    if (const auto* motion = std::get_if<MotionFacts>(&step->details)) entry = motion->grasp;
-  }
-  const StepFacts* chosen = nullptr;
-  for (const StepFacts* step : way_) {
-    const auto* grasp = std::get_if<GraspFacts>(&step->details);
-    if (grasp == nullptr) continue;
-    const bool better =
-        chosen == nullptr || grasp->feasible || !std::get<GraspFacts>(chosen->details).feasible;
-    if (entry > 0 ? grasp->entry == entry : better) chosen = step;
-  }
-  return chosen;
-}
-
-const StepFacts* RunSteps::FindLift() const {
-  const StepFacts* grasp = FindGrasp();
-  const StepFacts* chosen = nullptr;
-  for (const StepFacts* step : way_) {
-    const auto* lift = std::get_if<LiftFacts>(&step->details);
-    if (lift == nullptr) continue;
-    if (grasp != nullptr && lift->grasp == std::get<GraspFacts>(grasp->details).entry) return step;
-    chosen = step;
-  }
-  return chosen;
-}
-
 const StepFacts* RunSteps::FindFailure(Verb verb) const {
   const StepFacts* first = nullptr;
   for (const StepFacts& step : run_.steps) {
@@ -87,8 +87,8 @@ const StepFacts* RunSteps::FindFailure(Verb verb) const {
 
 std::vector<const StepFacts*> RunSteps::FindStory(std::size_t most) const {
   std::set<const StepFacts*> told = {end_,
-                                     FindGrasp(),
-                                     FindLift(),
+                                     FindGrasp(way_),
+                                     FindLift(way_),
                                      FindFailure(Verb::kCertify),
                                      FindFailure(Verb::kGrasp),
                                      FindFailure(Verb::kLift)};

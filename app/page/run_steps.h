@@ -8,6 +8,12 @@
 
 namespace pregrasp {
 
+/// The grasp on a way, the steps that led to an end, that a motion ends in; without a motion the
+/// last feasible one, else the last; null for none.
+const StepFacts* FindGrasp(const std::vector<const StepFacts*>& way);
+/// The lift of that grasp on the way, else the last; null for none.
+const StepFacts* FindLift(const std::vector<const StepFacts*>& way);
+
 /// Which steps of a run matter, and how they hang together.
 class RunSteps {
  public:
@@ -20,14 +26,8 @@ class RunSteps {
   bool IsOnWay(const StepFacts& step) const { return on_way_.count(step.id) > 0; }
   int NumberOf(const StepFacts& step) const { return run_.number_of.at(step.id); }
 
-  /// The grasp on the way that a motion ends in; without a motion the last feasible one, else the
-  /// last; null for none.
-  const StepFacts* FindGrasp() const;
-  /// The lift of that grasp on the way, else the last; null for none.
-  const StepFacts* FindLift() const;
-
   /// What the run is told by, in its order: verdicts on the start; key steps (IsKeyStep) on the
-  /// way, with that grasp and lift, and where the way ends; and, from beside the way, the first
+  /// way, with its grasp and lift, and where the way ends; and, from beside the way, the first
   /// plan, the first grasp and the first lift that failed, where none on the way did. At most
   /// `most`: of iterations and of keyframes those are taken that lie evenly.
   std::vector<const StepFacts*> FindStory(std::size_t most) const;

@@ -23,6 +23,7 @@ namespace {
 constexpr double kFocusShare = 0.06;  // of the object's length, around it
 constexpr double kHeadroom = 0.07;    // [m], above it, of a full-size object
 constexpr double kFullSize = 0.05;    // [m]; arrows and points shrink with objects below this
+constexpr double kNoForce = 1e-3;     // [N], below which there is no arrow
 constexpr double kGhostAfter = 1e-3;  // [m]
 constexpr double kGhostTurn = 0.01;   // [rad]
 
@@ -78,7 +79,8 @@ struct PictureMaker::Impl {
   ForceScale scale;
 
   // What a picture of the step is framed on.
-  MatrixX3 FindFocus(const StepFacts& step, const PictureOverlay& overlay) const;
+  MatrixX3 FindFocus(const StepFacts& step, const PictureOverlay& overlay,
+                     const PictureConfig& config) const;
   RenderCamera ChooseCamera(const PictureConfig& config, const StepFacts& step,
                             const PictureOverlay& overlay) const;
   void AddBodies(RenderScene& picture, const StepFacts& step, const PictureOverlay& overlay) const;
@@ -122,12 +124,19 @@ MatrixX3 LinkOrigins(const HandModel& model, const HandFacts& hand) {
 
 }  // namespace
 
-MatrixX3 PictureMaker::Impl::FindFocus(const StepFacts& step, const PictureOverlay& overlay) const {
+MatrixX3 PictureMaker::Impl::FindFocus(const StepFacts& step, const PictureOverlay& overlay,
+                                       const PictureConfig& config) const {
   MatrixX3 seen_W = TransformPoints(step.object().X_WB(), meshes[0]->V);
   for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
     Append(seen_W, TransformPoints(ghost.X_WO, meshes[0]->V));
   }
   Append(seen_W, overlay.focus_W);
+  for (const FingerFacts& finger : step.fingers) {
+    const double force = finger.f_W.norm();
+    if (!config.forces || overlay.hand || !finger.on || force < kNoForce) continue;
+    const Vector3 tail_W = finger.p_WF - finger.f_W * (scale.Length(force) / force);
+    Append(seen_W, MatrixX3(tail_W.transpose()));
+  }
   return seen_W;
 }
 
@@ -136,7 +145,7 @@ RenderCamera PictureMaker::Impl::ChooseCamera(const PictureConfig& config, const
   const auto& fixed = config.camera ? config.camera : scene.camera;
   if (fixed) return {fixed->p_WCam, fixed->p_WTarget, fixed->fov_deg};
   const double aspect = static_cast<double>(config.width) / config.height;
-  const MatrixX3 seen_U = FindFocus(step, overlay) * R_UW.transpose();
+  const MatrixX3 seen_U = FindFocus(step, overlay, config) * R_UW.transpose();
   RenderCamera camera_U = FrameCamera(start_focus_U, view_U, aspect);
   constexpr double kBorder = 0.08;
   if (!IsInSight(camera_U, seen_U, aspect, kBorder)) {
@@ -197,7 +206,7 @@ void PictureMaker::Impl::AddArrow(RenderScene& picture, const Vector3& p_W, bool
                                   const Vector3& f_W, const Rgba& color,
                                   const std::string& name) const {
   const double force = f_W.norm();
-  if (force < 1e-3) return;
+  if (force < kNoForce) return;
   const Vector3 v_W = f_W * (scale.Length(force) / force);
   const Vector3 tail_W = ends_there ? Vector3(p_W - v_W) : p_W;
   picture.arrows.push_back({tail_W, v_W, static_cast<float>(0.0016 * scale.shrunk), color});
@@ -304,11 +313,9 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
   return picture;
 }
 
-CameraConfig PictureMaker::FrameSteps(const std::vector<const StepFacts*>& shown,
-                                      const FactsSource& steps, const PictureConfig& config,
-                                      const std::optional<Vector3>& view) const {
+MatrixX3 PictureMaker::CalcFocus(const std::vector<const StepFacts*>& shown,
+                                 const FactsSource& steps, const PictureConfig& config) const {
   PREGRASP_CHECK(!shown.empty());
-  if (impl_->scene.camera && !view) return *impl_->scene.camera;
   MatrixX3 focus_U = impl_->start_focus_U;
   for (const StepFacts* step : shown) {
     PictureOverlay overlay = Chosen(MakeOverlay(*step, steps, impl_->hand), config);
@@ -318,11 +325,17 @@ CameraConfig PictureMaker::FrameSteps(const std::vector<const StepFacts*>& shown
           frame->touching.empty() ? MatrixX3(0, 3) : LinkOrigins(impl_->hand, frame->hand);
     }
     // Corners of a box do: a mesh may have any number of points.
-    const MatrixX3 seen_U = impl_->FindFocus(*step, overlay) * impl_->R_UW.transpose();
+    const MatrixX3 seen_U = impl_->FindFocus(*step, overlay, config) * impl_->R_UW.transpose();
     Append(focus_U, FocusAround(seen_U, 0.0, 0.0));
   }
+  return focus_U * impl_->R_UW;
+}
+
+CameraConfig PictureMaker::Frame(const MatrixX3& focus_W, const PictureConfig& config,
+                                 const std::optional<Vector3>& view) const {
+  if (impl_->scene.camera && !view) return *impl_->scene.camera;
   const RenderCamera camera =
-      Rotated(FrameCamera(focus_U, view.value_or(impl_->view_U),
+      Rotated(FrameCamera(focus_W * impl_->R_UW.transpose(), view.value_or(impl_->view_U),
                           static_cast<double>(config.width) / config.height),
               impl_->R_UW.transpose());
   return {camera.p_WCam, camera.p_WTarget, camera.fov_deg};

@@ -70,13 +70,15 @@ class PictureMaker {
   RenderScene Compose(const StepFacts& step, const FactsSource& steps, const PictureText& text,
                       const PictureConfig& config) const;
 
-  /// One camera that shows what matters in every one of these steps: the object, where plans leave
-  /// it, the hand. The scene's own, if it has one and `view` is not given.
-  /// @param shown  at least one. @param view  towards the camera, z against gravity; unset takes
-  ///               the automatic one.
-  CameraConfig FrameSteps(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
-                          const PictureConfig& config,
-                          const std::optional<Vector3>& view = std::nullopt) const;
+  /// What matters in every one of these steps: the object, where plans leave it, the hand, as
+  /// points of the world (#points x 3). @param shown  at least one.
+  MatrixX3 CalcFocus(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
+                     const PictureConfig& config) const;
+
+  /// One camera that shows all these points. The scene's own, if it has one and `view` is not
+  /// given. @param view  towards the camera, z against gravity; unset takes the automatic one.
+  CameraConfig Frame(const MatrixX3& focus_W, const PictureConfig& config,
+                     const std::optional<Vector3>& view = std::nullopt) const;
 
  private:
   struct Impl;

@@ -192,10 +192,20 @@ Image PictureDrawer::Render(const StepFacts& step, const FactsSource& steps, con
                                  {config.width, config.height, config.quality});
 }
 
+MatrixX3 PictureDrawer::CalcFocus(const std::vector<const StepFacts*>& shown,
+                                  const FactsSource& steps, const PictureConfig& config) {
+  return Maker().CalcFocus(shown, steps, config);
+}
+
+CameraConfig PictureDrawer::Frame(const MatrixX3& focus_W, const PictureConfig& config,
+                                  const std::optional<Vector3>& view) {
+  return Maker().Frame(focus_W, config, view);
+}
+
 CameraConfig PictureDrawer::FrameSteps(const std::vector<const StepFacts*>& shown,
                                        const FactsSource& steps, const PictureConfig& config,
                                        const std::optional<Vector3>& view) {
-  return Maker().FrameSteps(shown, steps, config, view);
+  return Frame(CalcFocus(shown, steps, config), config, view);
 }
 
 void PictureDrawer::Draw(const StepFacts& step, const FactsSource& steps, const Shot& shot,

@@ -59,10 +59,16 @@ class PictureDrawer {
   /// The picture itself.
   Image Render(const StepFacts& step, const FactsSource& steps, const Shot& shot);
 
-  /// PictureMaker::FrameSteps.
+  /// PictureMaker::CalcFocus and Frame, of which FrameSteps is both.
+  MatrixX3 CalcFocus(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
+                     const PictureConfig& config);
+  CameraConfig Frame(const MatrixX3& focus_W, const PictureConfig& config,
+                     const std::optional<Vector3>& view = std::nullopt);
   CameraConfig FrameSteps(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
                           const PictureConfig& config,
                           const std::optional<Vector3>& view = std::nullopt);
+
+  const Scene& scene() const { return scene_; }
 
   /// Writes what the picture shows, but for its texts beside the scene, as a .3Dscene for MRPT's
   /// SceneViewer3D, which looks at it from anywhere. @throws InputError likewise.

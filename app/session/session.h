@@ -82,6 +82,8 @@ class Session {
   void Restore(std::vector<StepFacts> steps, double tolerance);
 
   bool recording() const { return recorder_ != nullptr; }
+  /// Draws its steps.
+  PictureDrawer& drawer() { return *drawer_; }
 
   /// Count what this holds for whoever keeps it, where that asks for it: the second one what its
   /// timeline does.

@@ -16,5 +16,4 @@ for i = 3, 4 do
 end
 print(wild:why())
 print(calm:why())
-wild:shot { "wild", file = "out/wild.png", size = { 640, 360 } }
-calm:shot { "calm", file = "out/calm.png", size = { 640, 360 } }
+s:strip { wild, against = calm, file = "out/forks.png" }

@@ -148,6 +148,25 @@ local Run = {}
 ---@return table
 function Run:step(id) end
 
+---A picture of a step, made anew.
+---@param id string "path.1.mppi.3"
+---@param options ShotOptions with `file`
+function Run:shot(id, options) end
+
+---Steps side by side, all by one camera, each with what it says: those of the list, before and after or more; the key steps without one.
+---@param options RunStripOptions
+function Run:strip(options) end
+
+---@class RunStripOptions the list's entries are ids
+---@field file string "out/..": a PNG
+---@field against? Run a second run, shown below the first from where they first differ to what they came to; with a list its steps
+---@field camera? CameraTable one that has all in sight
+---@field size? integer[] {1920, 1440} pixels of the whole, the height at most
+---@field quality? "draft"|"normal"|"still" "still"
+---@field overlay? Overlay[] as of a run's own pictures
+---@field legend? boolean true: what colours mean
+---@field font_scale? number 1: size of all type, 0.3 to 4
+
 -- Scenes. In a scene file these functions are globals. ---------------------------------------------
 
 ---A scene. A scene file ends with `return scene { .. }`.
@@ -367,6 +386,20 @@ function Session:shot(options) end
 ---@field footer? boolean true: the line at the bottom
 ---@field font_scale? number 1: size of all type, 0.3 to 4
 ---@field file? string "out/NAME.png": drawn now, outside of the run directory
+
+---Steps side by side, all by one camera, each with what it says: those of the list, before and after or more; the last one without.
+---@param options StripOptions
+function Session:strip(options) end
+
+---@class StripOptions the list's entries are ids of the session's steps, or objects that a session gave
+---@field file string "out/..": a PNG
+---@field against? Session|Graph|Path|Optimizer|Trajectory|Grasps|Grasp|Motion|Frame|Simulation|Plan another branch: what led to the list's one entry stands above what led to this, from the last step that both have and the first that differ to what they came to
+---@field camera? CameraTable one that has all in sight
+---@field size? integer[] {1920, 1440} pixels of the whole, the height at most
+---@field quality? "draft"|"normal"|"still" "still"
+---@field overlay? Overlay[] as of a run's own pictures
+---@field legend? boolean true: what colours mean
+---@field font_scale? number 1: size of all type, 0.3 to 4
 
 ---Writes the run directory with all steps so far: at `dir`, or the one that is recorded to.
 ---@param dir? string "out/.."

@@ -59,6 +59,11 @@ local function predicate()
 end
 local saved, finished = {}, {}  -- directories that load_state and load can read
 local function shot() return { file = "out/x.png", quality = "draft", size = {64, 48} } end
+local function strip(of, other)
+  local options = { of, file = "out/y.png", quality = "draft", size = {400, 600} }
+  if random(2) == 1 then options.against = other else options[2] = other end
+  return options
+end
 local cheap = { ["mesh.triangles"] = 12, ["graph.samples"] = 1, ["cloud.points"] = 128, ["graph.top_percent"] = 20, ["screen.samples"] = 4,
   ["screen.iterations"] = 1, ["screen.rounds"] = 1, ["mppi.samples"] = 4, ["mppi.iterations"] = 2, ["certify.hold_seconds"] = 0.05,
   ["grasps.samples"] = 1, ["grasps.draws"] = 1, ["grasps.points"] = 100, ["grasps.pairs"] = 100, ["grasps.max_solves"] = 1, ["grasps.max_probes"] = 100,
@@ -84,7 +89,8 @@ local good = {
     graph = function() return { triangles = 12, samples = 1, points = 128 } end,
     break_when = function() if random(2) == 1 then return predicate() end end,
     settle = function() return { seconds = 0.02 } end,
-    shot = shot, save = function() return "out/run" .. random(3) end, verdict = function() end,
+    shot = shot, strip = function(s) return strip(random(2) == 1 and s or pick(steps), (any())) end,
+    save = function() return "out/run" .. random(3) end, verdict = function() end,
     save_state = function(s)
       local dir = "out/state" .. random(3)
       if random(2) == 1 then return dir end
@@ -130,7 +136,8 @@ local good = {
     why = function() end, why_not = function() return random(3) end, back = function() return random(0, 3) end,
     forward = function() return random(0, 3) end, object = function() end, save = function() return "out/run" .. random(3) end },
   Frame = { why = function() end, why_not = function() return (any()) end, shot = shot }, Array = { table = function() end },
-  Run = { step = function() return pick(steps) end }, Reason = {}, Shape = {}, Scene = {},
+  Run = { step = function() return pick(steps) end, shot = function() return pick(steps), shot() end,
+    strip = function(run) return strip("scene.start", random(2) == 1 and run or "sim.1") end }, Reason = {}, Shape = {}, Scene = {},
 }
 local fields = { "t", "num_steps", "object", "fingers", "contacts", "trace", "step_id", "name", "bodies", "stage", "kept",
   "best_cost", "certified", "reasons", "count", "reason", "text", "node", "rank", "score", "terms", 1, 2, -1, "nothing", "iteration" }
@@ -144,7 +151,7 @@ local function junk(depth)
   return random()
 end
 local costly = { what_if = 0.4, save_state = 0.2, trace = 0.2, check = 0.2, plan = 0.3, graph = 0.4, certify = 0.3, grasps = 0.4, optimize = 0.5,
-  save = 0.1, record = 0.05, shot = 0.05, motion = 0.1, verdict = 0.1, load_state = 0.5, load = 0.3, run = 0.4 }
+  save = 0.1, record = 0.05, shot = 0.05, strip = 0.05, motion = 0.1, verdict = 0.1, load_state = 0.5, load = 0.3, run = 0.4 }
 local calls, passed, depth = 0, 0, 0
 local tried, done = {}, {}  -- calls with good arguments, and those of them that gave a result, by Class:method
 local function count_good(name, ok, ...)

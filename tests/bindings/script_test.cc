@@ -9,6 +9,7 @@
 
 #include "app/recording/loaded_run.h"
 #include "app/recording/manifest.h"
+#include "render/image.h"
 #include "tests/bindings/lua_text.h"
 #include "tests/bindings/run_program.h"
 
@@ -154,6 +155,15 @@ TEST(ScriptTest, AFinishedRunIsReadBackStepByStep) {
     local step = run:step "sim.2"
     print(step.number, step.command.verb, step.fingers[2].finger, step.fingers[2].on)
     print(step.bodies[1].p_WB[1] == s:body("ruler").p[1], #step.contacts > 0, run.summary.status)
+    run:shot("sim.2", { file = "out/sim.png", size = { 160, 90 }, quality = "draft" })
+    run:strip { "scene.start", "sim.2", file = "out/pictures/strip.png", size = { 400, 300 }, quality = "draft" }
+    run:strip { file = "out/sheet.png", size = { 400, 600 }, quality = "draft" }
+    sim:wait { seconds = 0.1 }
+    s:save "out/longer"
+    run:strip { against = pg.load "out/longer", file = "out/pair.png", size = { 600, 900 }, quality = "draft" }
+    print(pcall(run.shot, run, "sim.2", {}))
+    print(pcall(run.strip, run, { "sim.3", file = "out/x.png" }))
+    print(pcall(run.strip, run, { "sim.2", file = "out/run/frames/x.png" }))
     print(pcall(run.step, run, "sim.3"))
     print(pcall(function() return run.steps end))
     print(pcall(pg.load, "out"))
@@ -165,7 +175,13 @@ TEST(ScriptTest, AFinishedRunIsReadBackStepByStep) {
       "3\twait\tindex\ttrue\n"
       "true\ttrue\tnil\n";
   EXPECT_EQ(result.out.substr(0, start.size()), start);
-  for (const char* part : {"id: expected \"sim.1\", got \"sim.3\"", "unknown key \"steps\"",
+  for (const char* picture : {"sim.png", "pictures/strip.png", "sheet.png", "pair.png"}) {
+    EXPECT_GT(ReadPng(folder.path() / "out" / picture).width, 0) << picture;
+  }
+  EXPECT_FALSE(fs::exists(folder.path() / "out/x.png"));
+  for (const char* part : {"file: expected where the picture goes, got nothing",
+                           "step: expected \"sim.1\", got \"sim.3\"", "frames/x.png: expected",
+                           "id: expected \"sim.1\", got \"sim.3\"", "unknown key \"steps\"",
                            "out/manifest.json", "/etc/manifest.json"}) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part << '\n' << result.out;
   }

@@ -6,6 +6,7 @@
 
 #include "app/core/data_folder.h"
 #include "app/session/verification.h"
+#include "render/image.h"
 #include "tests/bindings/run_program.h"
 #include "tests/commands/small_run.h"
 #include "tests/networks/random_network.h"
@@ -187,6 +188,22 @@ TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
   EXPECT_NE(result.out.find(" 1.2 "), std::string::npos);
   EXPECT_EQ(result.out.find("\nscene\n"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find(" 0.5\n"), std::string::npos);
+  // As pictures: each run a row, the first difference framed; a strip of steps of one.
+  const auto show = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"show", "one", "--out", "shown.png"});
+    return RunProgram(arguments, folder_);
+  };
+  EXPECT_EQ(show({"--against", "other", "--size", "1600x900"}).err, "");
+  const Image pair = ReadPng(folder_ / "shown.png");
+  EXPECT_EQ(show({"--steps", "scene.start,path.1.screen.1", "--size", "800x600"}).err, "");
+  EXPECT_EQ(pair.width, 1600);
+  EXPECT_EQ(ReadPng(folder_ / "shown.png").width, 800);
+  EXPECT_NE(show({"--steps", "scene.start,path.1.screen.9"}).err.find("path.1.screen."),
+            std::string::npos);
+  EXPECT_EQ(show({"--against", "none"}).code, 2);
+  EXPECT_EQ(show({"--against", "other", "--step", "scene.start"}).err,
+            "--against: expected no --step beside it, got --step scene.start\n");
+  EXPECT_EQ(show({"--steps", "scene.start", "--out", "page.html"}).code, 2);
   const fs::path rough = MakeFailingRun("rough", {"--set", "object.friction=0.25"});
   result = RunProgram({"diff", one.string(), rough.string()}, folder_);
   EXPECT_EQ(result.out.rfind("path.1.screen.1: ", 0), 0U) << result.out;

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "app/core/error.h"
-#include "app/page/contact_sheet.h"
 #include "app/page/film.h"
 #include "app/page/page_server.h"
 #include "app/page/run_steps.h"
+#include "app/page/strip.h"
 #include "app/pictures/words.h"
 #include "app/recording/checked_file.h"
 #include "app/session/session.h"

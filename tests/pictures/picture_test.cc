@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "app/core/error.h"
 #include "app/geometry/mass_properties.h"
 #include "app/geometry/tessellate.h"
@@ -129,8 +131,9 @@ TEST_F(PictureMakerTest, OneCameraHasTheObjectInSightInAllStepsThatItIsFramedFor
   }
   std::vector<const StepFacts*> shown;
   for (const StepFacts& step : steps) shown.push_back(&step);
-  const CameraConfig camera = maker_.FrameSteps(shown, timeline_, {});
-  const CameraConfig front = maker_.FrameSteps(shown, timeline_, {}, Vector3(0.0, -1.0, 0.0));
+  const MatrixX3 focus_W = maker_.CalcFocus(shown, timeline_, {});
+  const CameraConfig camera = maker_.Frame(focus_W, {});
+  const CameraConfig front = maker_.Frame(focus_W, {}, Vector3(0.0, -1.0, 0.0));
   EXPECT_NEAR(front.p_WCam.z(), front.p_WTarget.z(), 1e-9);
   EXPECT_LT(front.p_WCam.y(), front.p_WTarget.y());
   for (const StepFacts& step : steps) {
@@ -141,6 +144,26 @@ TEST_F(PictureMakerTest, OneCameraHasTheObjectInSightInAllStepsThatItIsFramedFor
       EXPECT_TRUE(IsInSight({each.p_WCam, each.p_WTarget, each.fov_deg}, ends, 16.0 / 9.0, 0.0));
     }
   }
+}
+
+TEST_F(PictureMakerTest, ArrowsOfForcesAreWhollyInSight) {
+  StepFacts step = Pull(Press(0.11, 0.012), 0.03).facts;
+  ASSERT_TRUE(step.fingers[1].on);
+  step.fingers[1].f_W = Vector3(0.0, 0.0, -12.0);
+  step.bodies[0].p_WB.z() += 0.1;
+  step.fingers[1].p_WF.z() += 0.1;
+  const CameraConfig framed = maker_.Frame(maker_.CalcFocus({&step}, timeline_, {}), {});
+  const RenderScene scene = Compose(step);
+  const auto arrow =
+      std::find_if(scene.arrows.begin(), scene.arrows.end(), [&](const RenderArrow& each) {
+        return (each.p_W + each.v_W - step.fingers[1].p_WF).norm() < 1e-9;
+      });
+  ASSERT_NE(arrow, scene.arrows.end());
+  EXPECT_GT(arrow->v_W.norm(), 0.05);
+  const MatrixX3 tail_W = arrow->p_W.transpose();
+  EXPECT_TRUE(
+      IsInSight({framed.p_WCam, framed.p_WTarget, framed.fov_deg}, tail_W, 16.0 / 9.0, 0.0));
+  EXPECT_TRUE(IsInSight(scene.camera, tail_W, 16.0 / 9.0, 0.0));
 }
 
 TEST_F(PictureMakerTest, TheAutomaticCameraHasTheObjectInSightWhereverItIs) {
