@@ -10,6 +10,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/progress.h"
 #include "app/core/error.h"
+#include "app/page/figure.h"
 #include "app/page/film.h"
 #include "app/page/page.h"
 #include "app/page/pair.h"
@@ -23,7 +24,7 @@ namespace pregrasp {
 namespace {
 
 struct ShowOptions {
-  std::string run, step, against, out, size, camera;
+  std::string run, step, what, against, out, size, camera;
   std::vector<std::string> steps, overlay;
   double font_scale = 0.0;  // 0: as the picture has it
   bool no_card = false, no_legend = false, no_footer = false, no_axes = false;
@@ -172,6 +173,9 @@ int ShowFilm(const ShowOptions& options) {
 int Show(const ShowOptions& options) {
   const std::filesystem::path out = options.out;
   const std::string kind = out.extension().string();
+  if (!options.what.empty() && kind != ".svg") {
+    throw InputError("--what", "", "a drawing, --out FILE.svg", options.out);
+  }
   if (kind == ".glb") {
     RefuseFlags(options, false);
     WriteMotionFilm(LoadRun(options.run), out);
@@ -182,11 +186,16 @@ int Show(const ShowOptions& options) {
     WritePage(LoadRun(options.run), out);
     return 0;
   }
+  if (kind == ".svg") {
+    RefuseFlags(options, false);
+    WriteFigure(LoadRun(options.run), options.what, out);
+    return 0;
+  }
   if (IsFilmFile(out)) return ShowFilm(options);
   if (!options.step.empty() && (kind == ".png" || kind == ".3Dscene")) return ShowStep(options);
   if (options.step.empty() && kind == ".png") return ShowSheet(options);
   throw InputError("--out", "",
-                   "FILE.png, .html, .mp4, .webm, .gif or .glb, or with --step FILE.3Dscene",
+                   "FILE.png, .svg, .html, .mp4, .webm, .gif or .glb, or with --step FILE.3Dscene",
                    '"' + options.out + '"');
 }
 
@@ -205,6 +214,9 @@ void AddShow(const Subcommand& app, Action& action) {
       .Add("--steps", options->steps,
            "Of a strip: the steps' ids with commas, all by one camera, before,after or more")
       .CommaSeparated();
+  command.Add("--what", options->what,
+              "Of a drawing: costs, of the iterations along each path; graph, the contact states "
+              "that are kept");
   command.Add("--against", options->against,
               "Of a pair: another run directory, below the first one step by step, from where they "
               "first differ to what they came to; with --steps those");
@@ -212,7 +224,7 @@ void AddShow(const Subcommand& app, Action& action) {
       .Add("--out", options->out,
            "FILE.html, the run as a page that explains itself; FILE.png, a picture of the step, a "
            "strip of the steps, a pair of runs, or without these a sheet of the run's key steps; "
-           "FILE.3Dscene, the step for MRPT's "
+           "FILE.svg, a drawing for print; FILE.3Dscene, the step for MRPT's "
            "SceneViewer3D; FILE.mp4, .webm or .gif, the hand's motion as a film, by the program "
            "ffmpeg; FILE.glb, the same as binary glTF, for modelling programs and web viewers")
       .Required();

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "app/page/html_text.h"
 
 namespace pregrasp {
 namespace {
 
-constexpr double kWidth = 640.0, kHeight = 260.0, kLeft = 62.0, kRight = 110.0, kTop = 30.0,
-                 kBottom = 44.0;
+constexpr double kWidth = CostPlot::kWidth, kHeight = CostPlot::kHeight, kLeft = 62.0,
+                 kRight = 110.0, kTop = 30.0, kBottom = 44.0;
 
 struct PlotRange {
   double low = 0.0, high = 1.0, tick = 1.0;
@@ -104,6 +105,45 @@ std::string ToSvg(const CostPlot& plot) {
                   plot.y_label + (cut ? ", what is higher cut off at the upper edge" : ""));
   svg += PlotText(0.5 * (kLeft + right), kHeight - 6.0, "middle", plot.x_label);
   return svg + "</svg>\n";
+}
+
+std::vector<CostPlot> MakeCostPlots(const LoadedRun& run) {
+  // By path; where somebody went back and on otherwise, a line for each end.
+  std::map<int, std::vector<std::vector<const IterationFacts*>>> of_path;
+  std::map<std::string, bool> goes_on;
+  for (const StepFacts& step : run.steps) {
+    if (step.command.verb == Verb::kIterate) goes_on[step.command.node] = true;
+  }
+  for (const StepFacts& step : run.steps) {
+    if (step.command.verb != Verb::kIterate || goes_on.count(step.id) > 0) continue;
+    std::vector<const IterationFacts*> line;
+    for (const StepFacts* at = &step; at->command.verb == Verb::kIterate;
+         at = &run.Get(at->command.node)) {
+      line.push_back(&std::get<IterationFacts>(at->details));
+    }
+    std::reverse(line.begin(), line.end());
+    of_path[line.front()->path].push_back(std::move(line));
+  }
+  std::vector<CostPlot> plots;
+  for (const auto& [path, lines] : of_path) {
+    CostPlot plot;
+    plot.title = fmt::format("Costs of the plans along path {}", path);
+    plot.x_label = "iteration";
+    plot.y_label = "cost";
+    for (const auto& line : lines) {
+      CostPlot::Line best{"best so far", "best", {}}, mean{"mean", "mean", {}};
+      double least = 0.0;
+      for (const IterationFacts* facts : line) {
+        least = best.points.empty() ? facts->best_cost : std::min(least, facts->best_cost);
+        best.points.emplace_back(facts->iteration, least);
+        mean.points.emplace_back(facts->iteration, facts->mean_cost);
+      }
+      plot.lines.push_back(std::move(best));
+      plot.lines.push_back(std::move(mean));
+    }
+    plots.push_back(std::move(plot));
+  }
+  return plots;
 }
 
 }  // namespace pregrasp

@@ -155,7 +155,8 @@ class Page {
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
            "<meta name=\"color-scheme\" content=\"light dark\">\n"
            "<link rel=\"icon\" href=\"data:,\">\n<title>" +
-           title + "</title>\n<style>\n" + PageAsset("page.css") + "</style>\n</head>\n<body>\n";
+           title + "</title>\n<style>\n" + PageAsset("page.css") + PageAsset("figures.css") +
+           "</style>\n</head>\n<body>\n";
   }
 
   std::string Badge() const {
@@ -277,9 +278,7 @@ class Page {
 
   const std::optional<ContactGraph>& graph() const {
     if (!restored_) {
-      const nlohmann::json::json_pointer percent("/configuration/graph/top_percent");
-      graph_ = RestoreGraph(steps_.end(), run_,
-                            run_.manifest.value(percent, ContactGraphConfig{}.top_percent));
+      graph_ = RestoreGraph(run_);
       restored_ = true;
     }
     return graph_;
@@ -288,11 +287,8 @@ class Page {
   std::string GraphSection() const {
     if (!graph()) return "";
     std::string html =
-        "<p>A square is a contact state: the thumb on the triangle of its row, the index finger on "
-        "that of its column. Colours are scores here, dark low and bright high; states that were "
-        "pruned are pale or empty. Those with a dark orange rim were kept for their score without "
-        "surroundings alone: a path may not begin with these. A path goes from a state to one in "
-        "the same row or column, where one finger stays.</p>\n";
+        "<p>" + EscapeHtml(GraphWords()) +
+        " With scripts, states that were pruned are pale, and any can be asked.</p>\n";
     html += "<div class=\"graph\" id=\"graph-view\"><div class=\"matrix-box\">" +
             GraphSvg(*graph()) + "</div><div class=\"scripted graph-side\"></div></div>\n";
     std::vector<int> best = graph()->kept();
@@ -322,7 +318,12 @@ class Page {
   }
 
   std::string CostSection() const {
-    return Section("costs", "What the iterations gained", CostPlots(run_));
+    std::string html;
+    for (const CostPlot& plot : MakeCostPlots(run_)) {
+      html += "<figure>" + ToSvg(plot) + "<figcaption><p>" + EscapeHtml(plot.title) +
+              ".</p></figcaption></figure>\n";
+    }
+    return Section("costs", "What the iterations gained", html);
   }
 
   std::string SpaceSection() const {

@@ -9,6 +9,7 @@
 
 #include "app/page/html_text.h"
 #include "app/page/page_space.h"
+#include "app/page/run_steps.h"
 #include "app/pictures/words.h"
 #include "render/palette.h"
 
@@ -67,6 +68,12 @@ std::optional<ContactGraph> RestoreGraph(const StepFacts& step, const FactsSourc
   }
   if (under_way) graph.PruneStep(pruning->nodes_done);
   return graph;
+}
+
+std::optional<ContactGraph> RestoreGraph(const LoadedRun& run) {
+  const nlohmann::json::json_pointer percent("/configuration/graph/top_percent");
+  return RestoreGraph(RunSteps(run).end(), run,
+                      run.manifest.value(percent, ContactGraphConfig{}.top_percent));
 }
 
 PackedSentences PackSentences(const std::vector<std::string>& sentences) {
@@ -155,24 +162,45 @@ GraphJson PageGraph(const ContactGraph& graph) {
           {"plain", CssColor(NeutralColor())}};
 }
 
-std::string GraphSvg(const ContactGraph& graph) {
-  constexpr double kSide = 480.0, kLeft = 34.0, kTop = 22.0;
-  const int count = graph.num_triangles();
-  const double cell = kSide / count;
+double HighestScore(const ContactGraph& graph) {
   double highest = 1e-12;
   for (const ContactNode& node : graph.nodes()) highest = std::max(highest, node.s_c);
+  return highest;
+}
+
+const char* GraphWords() {
+  return "A square is a contact state: the thumb on the triangle of its row, the index finger on "
+         "that of its column. Colours are scores with the surroundings, dark low and bright high; "
+         "states that were pruned are left out. Those with a dark orange rim were kept for their "
+         "score without surroundings alone: a path may not begin with these. A path goes from a "
+         "state to one in the same row or column, where one finger stays.";
+}
+
+std::string GraphSvg(const ContactGraph& graph) {
+  constexpr double kSide = 480.0, kLeft = 50.0, kTop = 40.0;
+  const int count = graph.num_triangles();
+  const double cell = kSide / count, highest = HighestScore(graph);
   std::string svg = fmt::format(
       "<svg class=\"matrix\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{} of {} "
       "contact states are kept: rows are the thumb's triangles, columns the index finger's\">\n"
       "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"ground\"/>\n",
-      kLeft + kSide + 2, kTop + kSide + 2, graph.kept().size(), graph.nodes().size(), kLeft, kTop,
-      kSide, kSide);
+      kGraphWidth, kGraphHeight, graph.kept().size(), graph.nodes().size(), kLeft, kTop, kSide,
+      kSide);
   for (const int id : graph.kept()) {
     const ContactNode& node = graph.nodes()[id];
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"{}/>\n",
         kLeft + node.index * cell, kTop + node.thumb * cell, cell, cell,
         CssColor(ScoreColor(node.s_c / highest)), node.initial ? "" : " class=\"later\"");
+  }
+  constexpr int kMostTicks = 12;
+  const int every = count <= kMostTicks ? 1 : 5;
+  for (int i = 0; i < count; i += every) {
+    const double middle = (i + 0.5) * cell;
+    svg += fmt::format(
+        "<text class=\"tick\" x=\"{:.1f}\" y=\"{:.0f}\" text-anchor=\"middle\">{}</text>"
+        "<text class=\"tick\" x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
+        kLeft + middle, kTop - 6.0, i, kLeft - 6.0, kTop + middle + 3.5, i);
   }
   svg += fmt::format(
       "<text x=\"{:.0f}\" y=\"15\" text-anchor=\"middle\">index finger's triangle</text>"

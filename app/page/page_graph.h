@@ -16,6 +16,9 @@ namespace pregrasp {
 std::optional<ContactGraph> RestoreGraph(const StepFacts& step, const FactsSource& steps,
                                          double top_percent);
 
+/// The same at the end of a finished run.
+std::optional<ContactGraph> RestoreGraph(const LoadedRun& run);
+
 /// The graph as assets/graph.js reads it: the mesh; scores, ranks, verdict and why (DescribeReason)
 /// of every node.
 nlohmann::ordered_json PageGraph(const ContactGraph& graph);
@@ -23,6 +26,12 @@ nlohmann::ordered_json PageGraph(const ContactGraph& graph);
 /// The graph as a picture that needs no script: a square a kept node, in the row of its thumb's
 /// triangle and the column of its index finger's.
 std::string GraphSvg(const ContactGraph& graph);
+/// Its view box.
+inline constexpr double kGraphWidth = 532.0, kGraphHeight = 522.0;
+/// How to read it.
+const char* GraphWords();
+/// The highest score s_c of its nodes, which has the brightest colour.
+double HighestScore(const ContactGraph& graph);
 
 /// Sentences that differ in numbers alone, so that thousands of them take little room: each
 /// sentence is the number of its pattern, followed by the numbers that stand at the pattern's "#".

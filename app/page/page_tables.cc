@@ -309,44 +309,4 @@ std::string MadeOfTables(const LoadedRun& run) {
   return "<div class=\"tables\">\n" + html + libraries.Table("Libraries") + "</div>\n";
 }
 
-std::string CostPlots(const LoadedRun& run) {
-  // By path; where somebody went back and on otherwise, a line for each end.
-  std::map<int, std::vector<std::vector<const IterationFacts*>>> of_path;
-  std::map<std::string, bool> goes_on;
-  for (const StepFacts& step : run.steps) {
-    if (step.command.verb == Verb::kIterate) goes_on[step.command.node] = true;
-  }
-  for (const StepFacts& step : run.steps) {
-    if (step.command.verb != Verb::kIterate || goes_on.count(step.id) > 0) continue;
-    std::vector<const IterationFacts*> line;
-    for (const StepFacts* at = &step; at->command.verb == Verb::kIterate;
-         at = &run.Get(at->command.node)) {
-      line.push_back(&std::get<IterationFacts>(at->details));
-    }
-    std::reverse(line.begin(), line.end());
-    of_path[line.front()->path].push_back(std::move(line));
-  }
-  std::string html;
-  for (const auto& [path, lines] : of_path) {
-    CostPlot plot;
-    plot.title = fmt::format("Costs of the plans along path {}", path);
-    plot.x_label = "iteration";
-    plot.y_label = "cost";
-    for (const auto& line : lines) {
-      CostPlot::Line best{"best so far", "best", {}}, mean{"mean", "mean", {}};
-      double least = 0.0;
-      for (const IterationFacts* facts : line) {
-        least = best.points.empty() ? facts->best_cost : std::min(least, facts->best_cost);
-        best.points.emplace_back(facts->iteration, least);
-        mean.points.emplace_back(facts->iteration, facts->mean_cost);
-      }
-      plot.lines.push_back(std::move(best));
-      plot.lines.push_back(std::move(mean));
-    }
-    html += "<figure>" + ToSvg(plot) + "<figcaption><p>" + EscapeHtml(plot.title) +
-            ".</p></figcaption></figure>\n";
-  }
-  return html;
-}
-
 }  // namespace pregrasp

@@ -20,7 +20,4 @@ std::string TriedTables(const LoadedRun& run, const RunSteps& steps);
 /// What the run is a function of: command, seed, changed settings, program, libraries.
 std::string MadeOfTables(const LoadedRun& run);
 
-/// A plot of the costs of each path that was optimised.
-std::string CostPlots(const LoadedRun& run);
-
 }  // namespace pregrasp

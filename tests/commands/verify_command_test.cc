@@ -189,8 +189,8 @@ TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
   EXPECT_EQ(result.out.find("\nscene\n"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find(" 0.5\n"), std::string::npos);
   // As pictures: each run a row, the first difference framed; a strip of steps of one.
-  const auto show = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"show", "one", "--out", "shown.png"});
+  const auto show = [&](std::vector<std::string> arguments, const char* out = "shown.png") {
+    arguments.insert(arguments.begin(), {"show", "one", "--out", out});
     return RunProgram(arguments, folder_);
   };
   EXPECT_EQ(show({"--against", "other", "--size", "1600x900"}).err, "");
@@ -203,7 +203,11 @@ TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
   EXPECT_EQ(show({"--against", "none"}).code, 2);
   EXPECT_EQ(show({"--against", "other", "--step", "scene.start"}).err,
             "--against: expected no --step beside it, got --step scene.start\n");
-  EXPECT_EQ(show({"--steps", "scene.start", "--out", "page.html"}).code, 2);
+  EXPECT_EQ(show({"--steps", "scene.start"}, "page.html").code, 2);
+  EXPECT_EQ(show({"--what", "graph"}, "graph.svg").err, "");
+  EXPECT_NE(ReadFile(folder_ / "graph.svg").find("contact states kept"), std::string::npos);
+  EXPECT_EQ(show({"--what", "graph"}).err,
+            "--what: expected a drawing, --out FILE.svg, got shown.png\n");
   const fs::path rough = MakeFailingRun("rough", {"--set", "object.friction=0.25"});
   result = RunProgram({"diff", one.string(), rough.string()}, folder_);
   EXPECT_EQ(result.out.rfind("path.1.screen.1: ", 0), 0U) << result.out;
