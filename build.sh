@@ -19,10 +19,14 @@ while (($#)); do
   esac
 done
 
+installed() { dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null | grep -q '^ii'; }
+no_osmesa() { ! apt-cache show libosmesa6-dev >/dev/null 2>&1; }  # Debian 14: libegl-dev takes its place
+
 missing=()
 for package in $(cat "${lists[@]}"); do
-  dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || missing+=("$package")
+  installed "$package" || missing+=("$package")
 done
+if [[ ${missing[*]} == libosmesa6-dev ]] && no_osmesa; then missing=(); fi
 if ((${#missing[@]})); then
   apt=(env DEBIAN_FRONTEND=noninteractive apt-get)
   if ((EUID != 0)); then
@@ -35,7 +39,14 @@ if ((${#missing[@]})); then
   fi
   echo "installing ${#missing[@]} packages: ${missing[*]}" >&2
   log=$(mktemp)
-  if ! { "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+  install_missing() {
+    "${apt[@]}" update || return
+    for i in "${!missing[@]}"; do
+      if [[ ${missing[i]} == libosmesa6-dev ]] && no_osmesa; then unset "missing[i]"; fi
+    done
+    "${apt[@]}" install -y --no-install-recommends "${missing[@]}"
+  }
+  if ! install_missing >"$log" 2>&1; then
     tail -20 "$log" >&2
     echo "installing packages failed; the whole log is $log" >&2
     exit 1

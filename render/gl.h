@@ -1,12 +1,16 @@
 #pragma once
 
-// OpenGL 4.5 core through OSMesa, without a loader library: a table of the entry points that the
-// renderer uses, filled once per process. The prototypes give each pointer its type; none of them
-// is called by name.
+// OpenGL 4.5 core without a loader library: a table of the entry points that the renderer uses,
+// filled once per process. The prototypes give each pointer its type; none of them is called by
+// name.
 #define GL_GLEXT_PROTOTYPES 1
-#include <GL/osmesa.h>
-// osmesa.h brings gl.h; glext.h must follow it.
+#include <GL/gl.h>
+// glext.h must follow gl.h.
 #include <GL/glext.h>
+
+#include <string>
+
+#include "render/gl_backend.h"
 
 namespace pregrasp {
 
@@ -91,21 +95,19 @@ struct GlFunctions {
 /// The table; valid once a GlContext was made. The pointers are the same for every context.
 extern GlFunctions gl;
 
-/// An OSMesa context of its own, with a token colour buffer: pictures are drawn into framebuffer
-/// objects. Current on the thread that called MakeCurrent last.
+/// An off-screen context of its own. Current on the thread that called MakeCurrent last.
 class GlContext {
  public:
   /// @throws InternalError if Mesa gives no OpenGL 4.5 core context.
   GlContext();
-  ~GlContext();
-  GlContext(const GlContext&) = delete;
-  GlContext& operator=(const GlContext&) = delete;
 
   void MakeCurrent();
 
+  /// What draws: GL_RENDERER, how it is reached, and GL_VERSION. The context is current.
+  std::string description() const;
+
  private:
-  OSMesaContext context_ = nullptr;
-  unsigned char buffer_[16 * 16 * 4] = {};
+  GlBackend backend_;
 };
 
 }  // namespace pregrasp

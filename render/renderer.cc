@@ -266,10 +266,7 @@ Image Renderer::Render(const RenderScene& scene, const RenderConfig& config) {
 
 std::string Renderer::description() const {
   impl_->context.MakeCurrent();
-  const auto text = [](GLenum name) {
-    return std::string(reinterpret_cast<const char*>(gl.GetString(name)));
-  };
-  return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
+  return impl_->context.description();
 }
 
 }  // namespace pregrasp

@@ -21,7 +21,7 @@ struct RenderConfig {
   void Validate() const;
 };
 
-/// Draws offscreen with OSMesa's core profile. One long-lived context per process is the intended
+/// Draws offscreen with Mesa's core profile. One long-lived context per process is the intended
 /// use; a Renderer is bound to the thread that made it. The same scene gives the same bytes.
 class Renderer {
  public:
@@ -32,7 +32,7 @@ class Renderer {
   /// @throws InputError for a size or a direction that it cannot draw; Interrupted, between passes.
   Image Render(const RenderScene& scene, const RenderConfig& config);
 
-  /// GL_RENDERER and GL_VERSION, for `info` and the log.
+  /// GL_RENDERER, OSMesa or EGL, and GL_VERSION, for `info`.
   std::string description() const;
 
  private:

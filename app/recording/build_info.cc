@@ -32,6 +32,7 @@ namespace {
 std::map<std::string, std::string> LoadedVersions() {
   const std::map<std::string, std::string> names = {{"assimp", "assimp"},
                                                     {"ccd", "ccd"},
+                                                    {"egl", "EGL"},
                                                     {"fcl", "fcl"},
                                                     {"nlopt", "nlopt"},
                                                     {"osmesa", "OSMesa"},

@@ -34,7 +34,7 @@ const std::vector<std::pair<std::regex, std::set<std::string>>> kOwners = {
     {std::regex("urdf.*|nlopt.*"), {"app/hand"}},
     {std::regex("torch/.*"), {"app/training"}},
     {std::regex("mrpt/.*"), {"app/recording"}},
-    {std::regex("GL/.*"), {"render"}},
+    {std::regex("E?GL/.*"), {"render"}},
     {std::regex("lua.*|lauxlib.*"), {"app/core", "bindings"}},
     {std::regex("histedit.*"), {"bindings"}},
     {std::regex("openssl/.*"), {"app/core"}},
