@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/label_layout.h"
+
 namespace pregrasp {
 namespace {
 
@@ -138,8 +140,29 @@ std::vector<std::string> WrapText(FontSet& fonts, FontFace face, float size,
   return lines;
 }
 
+namespace {
+
+// The corner for a card: the top left one unless another hides clearly less.
+Rect ChooseCorner(const Vector2& size, double width, double margin, const CardArea& area) {
+  constexpr double kClearly = 0.04;  // of the card
+  const double right = width - margin - size.x(), low = area.bottom - margin - size.y();
+  Rect best{margin, margin, size.x(), size.y()};
+  double covered = CalcCoveredShare(best, area.outlines);
+  for (const Vector2& corner : {Vector2(right, margin), Vector2(margin, low)}) {
+    const Rect card{corner.x(), corner.y(), size.x(), size.y()};
+    if (area.taken && card.Overlaps(area.taken->Grown(margin))) continue;
+    const double share = CalcCoveredShare(card, area.outlines);
+    if (share >= covered - kClearly) continue;
+    covered = share;
+    best = card;
+  }
+  return best;
+}
+
+}  // namespace
+
 std::optional<Rect> DrawCaptionCard(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,
-                                    const RenderCaption& caption, double bottom) {
+                                    const RenderCaption& caption, const CardArea& area) {
   const double pad = style.px(16.0), bar = style.px(4.0), margin = style.px(20.0);
   const double most =
       std::min(std::max(0.42 * canvas.width(), 180.0), canvas.width() - 2.0 * margin) - 2.0 * pad -
@@ -147,15 +170,16 @@ std::optional<Rect> DrawCaptionCard(Canvas& canvas, FontSet& fonts, const Overla
   std::vector<CardLine> lines = LayOutLines(fonts, style, caption, most);
   if (lines.empty()) return std::nullopt;
   const double column = AlignRows(fonts, style, lines, most);
-  const double height = CutToHeight(style, lines, 0.8 * bottom - margin - 1.5 * pad);
+  const double height = CutToHeight(style, lines, 0.8 * area.bottom - margin - 1.5 * pad);
   double width = 0.0;
   for (const CardLine& line : lines) {
     width = std::max<double>(
         width, line.row ? column + fonts.TextWidth(FontFace::kMono, line.size, line.value)
                         : fonts.TextWidth(line.face, line.size, line.text));
   }
-  const Rect card{margin, margin, std::ceil(width) + 2.0 * pad + bar,
-                  std::ceil(height) + 1.5 * pad};
+  const Rect card =
+      ChooseCorner({std::ceil(width) + 2.0 * pad + bar, std::ceil(height) + 1.5 * pad},
+                   canvas.width(), margin, area);
   canvas.FillRoundedRect(card, style.px(5.0), style.panel);
   canvas.FillRect({card.x, card.y, bar, card.height}, style.accent);
   double y = card.y + 0.75 * pad;

@@ -19,11 +19,18 @@ std::vector<std::string> WrapText(FontSet& fonts, FontFace face, float size,
 std::string FitText(FontSet& fonts, FontFace face, float size, const std::string& text,
                     double width);
 
-/// Draws the caption's title and lines at the picture's top left and returns the card, or nothing
-/// if there is nothing to say. What does not fit above `bottom` is left out, and an ellipsis says
-/// so.
+/// What a card has to keep clear of.
+struct CardArea {
+  double bottom = 0.0;                         ///< the card ends above it [pixels]
+  std::optional<Rect> taken;                   ///< and does not overlap this
+  std::vector<std::vector<Vector2>> outlines;  ///< convex; of these it covers as little as it can
+};
+
+/// Draws the caption's title and lines and returns the card, or nothing if there is nothing to say:
+/// at the picture's top left, or at the top right or bottom left where it covers clearly less. What
+/// does not fit is left out, and an ellipsis says so.
 std::optional<Rect> DrawCaptionCard(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,
-                                    const RenderCaption& caption, double bottom);
+                                    const RenderCaption& caption, const CardArea& area);
 
 /// Draws the legend at the lower right, above `bottom`; nothing if it is empty or does not fit.
 std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,

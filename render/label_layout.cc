@@ -75,6 +75,18 @@ bool ConvexMeetsRect(const std::vector<Vector2>& outline, const Rect& rect) {
   return true;
 }
 
+// Of a convex outline that runs either way round.
+bool IsInside(const Vector2& p, const std::vector<Vector2>& outline) {
+  bool left = true, right = true;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vector2& a = outline[i];
+    const double side = Cross(outline[(i + 1) % outline.size()] - a, p - a);
+    left = left && side >= 0.0;
+    right = right && side <= 0.0;
+  }
+  return outline.size() > 2 && (left || right);
+}
+
 class Layout {
  public:
   Layout(const std::vector<LabelRequest>& requests, const LabelArea& area)
@@ -172,6 +184,20 @@ class Layout {
 };
 
 }  // namespace
+
+double CalcCoveredShare(const Rect& rect, const std::vector<std::vector<Vector2>>& outlines) {
+  constexpr int kColumns = 24, kRows = 16;
+  int covered = 0;
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const Vector2 p(rect.x + (column + 0.5) / kColumns * rect.width,
+                      rect.y + (row + 0.5) / kRows * rect.height);
+      covered += std::any_of(outlines.begin(), outlines.end(),
+                             [&](const auto& outline) { return IsInside(p, outline); });
+    }
+  }
+  return static_cast<double>(covered) / (kColumns * kRows);
+}
 
 Vector2 LeaderStart(const Rect& box, const Vector2& anchor) {
   return {std::clamp(anchor.x(), box.x, box.right()), std::clamp(anchor.y(), box.y, box.bottom())};

@@ -62,12 +62,13 @@ std::optional<std::vector<Vector2>> Outline(const RenderBody& body, const Camera
   return ConvexOutline(std::move(points));
 }
 
-// Outlines, in the picture, of what labels had better not cover: bodies small enough to be what it
-// is about, cones and arrows.
-std::vector<std::vector<Vector2>> Outlines(const RenderScene& scene, const CameraView& view) {
+// Outlines, in the picture, of what labels and cards had better not cover: bodies small enough to
+// be what it is about, cones and arrows.
+std::vector<std::vector<Vector2>> Outlines(const RenderScene& scene, const CameraView& view,
+                                           bool with_ghosts) {
   std::vector<std::vector<Vector2>> outlines;
   for (const RenderBody& body : scene.bodies) {
-    if (body.shading != Shading::kSolid) continue;
+    if (body.shading != Shading::kSolid && !with_ghosts) continue;
     if (auto outline = Outline(body, view)) outlines.push_back(std::move(*outline));
   }
   for (const RenderCone& cone : scene.cones) {
@@ -101,12 +102,13 @@ class Overlay {
     const double bottom = canvas_.height() - footer_height;
     const Rect footer{0.0, bottom, canvas_.width(), footer_height};
     std::vector<Rect> obstacles = {footer};
-    if (const auto card = DrawCaptionCard(canvas_, fonts_, style_, caption, bottom)) {
-      obstacles.push_back(*card);
-    }
     const double note_room = bar ? 0.0 : style_.px(12.0);
     const auto legend = DrawLegend(canvas_, fonts_, style_, scene_.legend, bottom - note_room);
     if (legend) obstacles.push_back(*legend);
+    const CardArea area{bottom, legend, Outlines(scene_, view_, true)};
+    if (const auto card = DrawCaptionCard(canvas_, fonts_, style_, caption, area)) {
+      obstacles.push_back(*card);
+    }
     const int left_out = DrawLabels(std::move(obstacles));
     DrawFooter(footer, FooterNote(left_out, grid_spacing));
   }
@@ -138,7 +140,7 @@ class Overlay {
     LabelArea area;
     area.picture = picture.Grown(-style_.px(8.0));
     area.obstacles = std::move(obstacles);
-    area.shapes = Outlines(scene_, view_);
+    area.shapes = Outlines(scene_, view_, false);
     area.scale = style_.scale;
     const auto boxes = LayOutLabels(requests, area);
     // All leaders first: a box may lie over another's leader, never under it.

@@ -88,17 +88,17 @@ std::string CostFigure(const LoadedRun& run) {
 
 // What the colours of the squares mean, beside them.
 std::string ScoreBar(double x, double y, double highest) {
-  constexpr double kWidth = 16.0, kHeight = 240.0;
+  constexpr double kWide = 16.0, kHigh = 240.0;
   constexpr int kColors = 60;
   std::string bar = Text(x, y - 14.0, "score s_c");
   for (int i = 0; i < kColors; ++i) {
     bar += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.2f}\" width=\"{}\" height=\"{:.2f}\" fill=\"{}\"/>\n", x,
-        y + kHeight * (kColors - 1 - i) / kColors, kWidth, kHeight / kColors + 0.4,
+        y + kHigh * (kColors - 1 - i) / kColors, kWide, kHigh / kColors + 0.4,
         CssColor(ScoreColor((i + 0.5) / kColors)));
   }
   for (const double share : {0.0, 0.5, 1.0}) {
-    bar += Text(x + kWidth + 6.0, y + (1.0 - share) * kHeight + 4.0,
+    bar += Text(x + kWide + 6.0, y + (1.0 - share) * kHigh + 4.0,
                 fmt::format("{:.3f}", share * highest));
   }
   return bar;

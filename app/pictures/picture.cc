@@ -23,6 +23,7 @@ namespace {
 constexpr double kFocusShare = 0.06;  // of the object's length, around it
 constexpr double kHeadroom = 0.07;    // [m], above it, of a full-size object
 constexpr double kFullSize = 0.05;    // [m]; arrows and points shrink with objects below this
+constexpr double kNearFinger = 0.75;  // of what is seen, from its middle
 constexpr double kNoForce = 1e-3;     // [N], below which there is no arrow
 constexpr double kGhostAfter = 1e-3;  // [m]
 constexpr double kGhostTurn = 0.01;   // [rad]
@@ -131,9 +132,22 @@ MatrixX3 PictureMaker::Impl::FindFocus(const StepFacts& step, const PictureOverl
     Append(seen_W, TransformPoints(ghost.X_WO, meshes[0]->V));
   }
   Append(seen_W, overlay.focus_W);
+  // Fingers, but for those that have left: what they are far from would be small.
+  const Vector3 size = seen_W.colwise().maxCoeff() - seen_W.colwise().minCoeff(),
+                middle_W = 0.5 * (seen_W.colwise().maxCoeff() + seen_W.colwise().minCoeff());
   for (const FingerFacts& finger : step.fingers) {
+    if (overlay.hand || !finger.on) continue;
+    const bool near = (finger.p_WF - middle_W).norm() < kNearFinger * size.maxCoeff();
+    if (config.fingers && (finger.touching || near)) {
+      const double radius = scene.tips.radius(finger.finger);
+      const Vector3 p_WTip = finger.p_WF + radius * (step.object().q_WB * finger.nhat_O);
+      MatrixX3 ends(2, 3);
+      ends << (p_WTip.array() - radius).matrix().transpose(),
+          (p_WTip.array() + radius).matrix().transpose();
+      Append(seen_W, FocusAround(ends, 0.0, 0.0));
+    }
     const double force = finger.f_W.norm();
-    if (!config.forces || overlay.hand || !finger.on || force < kNoForce) continue;
+    if (!config.forces || force < kNoForce) continue;
     const Vector3 tail_W = finger.p_WF - finger.f_W * (scale.Length(force) / force);
     Append(seen_W, MatrixX3(tail_W.transpose()));
   }

@@ -146,6 +146,22 @@ TEST_F(PictureMakerTest, OneCameraHasTheObjectInSightInAllStepsThatItIsFramedFor
   }
 }
 
+TEST_F(PictureMakerTest, AFingerIsWhollyInSightUnlessItHasLeft) {
+  for (const bool left : {false, true}) {
+    StepFacts step = Pull(Press(0.11, 0.012), 0.03).facts;
+    FingerFacts& finger = step.fingers[1];
+    ASSERT_TRUE(finger.on);
+    finger.f_W = Vector3::Zero();
+    finger.touching = !left;
+    finger.p_WF.x() += left ? 0.6 : 0.14;
+    const RenderCamera camera = Compose(step).camera;
+    const double radius = job_.scene().tips.radius(finger.finger);
+    MatrixX3 edge(1, 3);
+    edge << finger.p_WF.x() + radius, finger.p_WF.y(), finger.p_WF.z() + radius;
+    EXPECT_EQ(IsInSight(camera, edge, 16.0 / 9.0, 0.0), !left);
+  }
+}
+
 TEST_F(PictureMakerTest, ArrowsOfForcesAreWhollyInSight) {
   StepFacts step = Pull(Press(0.11, 0.012), 0.03).facts;
   ASSERT_TRUE(step.fingers[1].on);

@@ -35,6 +35,20 @@ Case RandomCase(Rng& rng) {
   return c;
 }
 
+TEST(LabelLayoutTest, TheCoveredShareIsThatOfTheArea) {
+  const Rect rect{10, 20, 240, 160};
+  const std::vector<Vector2> left = {{-50, 0}, {130, 0}, {130, 300}, {-50, 300}},
+                             corner = {{10, 20}, {250, 20}, {10, 180}},
+                             away = {{300, 0}, {400, 0}, {350, 50}};
+  EXPECT_EQ(CalcCoveredShare(rect, {}), 0.0);
+  EXPECT_EQ(CalcCoveredShare(rect, {away}), 0.0);
+  EXPECT_DOUBLE_EQ(CalcCoveredShare(rect, {left}), 0.5);
+  EXPECT_NEAR(CalcCoveredShare(rect, {corner}), 0.5, 0.04);
+  const std::vector<Vector2> turned(corner.rbegin(), corner.rend());  // the other way round
+  EXPECT_DOUBLE_EQ(CalcCoveredShare(rect, {turned}), CalcCoveredShare(rect, {corner}));
+  EXPECT_DOUBLE_EQ(CalcCoveredShare(rect, {left, left}), 0.5);  // counted once
+}
+
 TEST(LabelLayoutTest, BoxesNeverOverlapEachOtherObstaclesOrAnchorsAndStayInside) {
   Rng rng(1);
   int placed = 0, asked = 0;

@@ -46,6 +46,37 @@ TEST(FontTest, MonospaceHasOneWidth) {
                   fonts.TextWidth(FontFace::kMono, 14.0F, "W\u03bb\u2192\u00b0"));
 }
 
+TEST(CaptionTest, TheCardStaysAtTheUpperLeftUnlessAnotherCornerHidesClearlyLess) {
+  FontSet fonts;
+  RenderCaption caption;
+  caption.title = "A title of some length";
+  caption.lines = {"one line of words", "another\t1.25"};
+  const auto draw = [&](const CardArea& area) {
+    Image image{800, 450, std::vector<std::uint8_t>(800 * 450 * 3, 200)};
+    Canvas canvas(image, fonts);
+    const auto card = DrawCaptionCard(canvas, fonts, OverlayStyle(image, 1.0), caption, area);
+    EXPECT_TRUE(card.has_value());
+    return card.value_or(Rect());
+  };
+  const auto box = [](double x, double y, double width, double height) {
+    return std::vector<Vector2>{{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
+  };
+  const Rect usual = draw({430.0, {}, {}});
+  EXPECT_LT(usual.right(), 400.0);
+  EXPECT_LT(usual.bottom(), 200.0);
+  EXPECT_EQ(draw({430.0, {}, {box(0, 0, usual.x + 2.0, 450)}}).x,
+            usual.x);  // hides next to nothing
+  const Rect right = draw({430.0, {}, {box(0, 0, 400, 450)}});
+  EXPECT_GT(right.x, 400.0);
+  EXPECT_EQ(right.y, usual.y);
+  const Rect low = draw({430.0, {}, {box(0, 0, 800, 220)}});
+  EXPECT_EQ(low.x, usual.x);
+  EXPECT_GT(low.y, 220.0);
+  EXPECT_LE(low.bottom(), 430.0);
+  const Rect taken{500.0, 60.0, 250.0, 300.0};
+  EXPECT_EQ(draw({430.0, taken, {box(0, 0, 400, 450)}}).x, usual.x);  // no corner is free
+}
+
 TEST(CaptionTest, WrappedLinesFitAndKeepEveryWord) {
   FontSet fonts;
   const std::string text =
