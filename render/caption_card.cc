@@ -142,21 +142,21 @@ std::vector<std::string> WrapText(FontSet& fonts, FontFace face, float size,
 
 namespace {
 
-// The corner for a card: the top left one unless another hides clearly less.
-Rect ChooseCorner(const Vector2& size, double width, double margin, const CardArea& area) {
-  constexpr double kClearly = 0.04;  // of the card
-  const double right = width - margin - size.x(), low = area.bottom - margin - size.y();
-  Rect best{margin, margin, size.x(), size.y()};
-  double covered = CalcCoveredShare(best, area.outlines);
-  for (const Vector2& corner : {Vector2(right, margin), Vector2(margin, low)}) {
+// The first of these corners, unless at another one a card hides clearly less.
+Rect ChooseCorner(const Vector2& size, const std::vector<Vector2>& corners, double margin,
+                  const CardArea& area) {
+  constexpr double kClearly = 0.015;  // of the card
+  std::optional<Rect> best;
+  double covered = 0.0;
+  for (const Vector2& corner : corners) {
     const Rect card{corner.x(), corner.y(), size.x(), size.y()};
-    if (area.taken && card.Overlaps(area.taken->Grown(margin))) continue;
+    if (best && area.taken && card.Overlaps(area.taken->Grown(margin))) continue;
     const double share = CalcCoveredShare(card, area.outlines);
-    if (share >= covered - kClearly) continue;
+    if (best && share >= covered - kClearly) continue;
     covered = share;
     best = card;
   }
-  return best;
+  return *best;
 }
 
 }  // namespace
@@ -177,9 +177,10 @@ std::optional<Rect> DrawCaptionCard(Canvas& canvas, FontSet& fonts, const Overla
         width, line.row ? column + fonts.TextWidth(FontFace::kMono, line.size, line.value)
                         : fonts.TextWidth(line.face, line.size, line.text));
   }
+  const Vector2 size(std::ceil(width) + 2.0 * pad + bar, std::ceil(height) + 1.5 * pad);
+  const double right = canvas.width() - margin - size.x(), low = area.bottom - margin - size.y();
   const Rect card =
-      ChooseCorner({std::ceil(width) + 2.0 * pad + bar, std::ceil(height) + 1.5 * pad},
-                   canvas.width(), margin, area);
+      ChooseCorner(size, {{margin, margin}, {right, margin}, {margin, low}}, margin, area);
   canvas.FillRoundedRect(card, style.px(5.0), style.panel);
   canvas.FillRect({card.x, card.y, bar, card.height}, style.accent);
   double y = card.y + 0.75 * pad;
@@ -198,7 +199,7 @@ std::optional<Rect> DrawCaptionCard(Canvas& canvas, FontSet& fonts, const Overla
 }
 
 std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,
-                               const RenderLegend& legend, double bottom) {
+                               const RenderLegend& legend, const CardArea& area) {
   if (legend.title.empty() && legend.scale.empty() && legend.swatches.empty()) return std::nullopt;
   const double pad = style.px(12.0), line = std::round(style.small * 1.55);
   const double bar_width = style.px(220.0), bar_height = style.px(12.0);
@@ -214,9 +215,11 @@ std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyl
   }
   const double margin = style.px(20.0);
   const Vector2 size(std::ceil(width) + 2.0 * pad, std::ceil(height) + 1.6 * pad);
-  const Rect card{canvas.width() - margin - size.x(), bottom - margin - size.y(), size.x(),
-                  size.y()};
-  if (card.x < margin || card.y < margin) return std::nullopt;
+  const double right = canvas.width() - margin - size.x(), low = area.bottom - margin - size.y();
+  if (right < margin || low < margin) return std::nullopt;
+  std::vector<Vector2> corners = {{right, low}, {margin, low}};
+  if (area.top_is_free) corners.emplace_back(right, margin);
+  const Rect card = ChooseCorner(size, corners, margin, area);
 
   canvas.FillRoundedRect(card, style.px(5.0), style.panel);
   double y = card.y + 0.8 * pad;

@@ -19,11 +19,12 @@ std::vector<std::string> WrapText(FontSet& fonts, FontFace face, float size,
 std::string FitText(FontSet& fonts, FontFace face, float size, const std::string& text,
                     double width);
 
-/// What a card has to keep clear of.
+/// What a card or a legend has to keep clear of.
 struct CardArea {
-  double bottom = 0.0;                         ///< the card ends above it [pixels]
-  std::optional<Rect> taken;                   ///< and does not overlap this
+  double bottom = 0.0;                         ///< it ends above this [pixels]
+  std::optional<Rect> taken;                   ///< and goes to no other corner that overlaps this
   std::vector<std::vector<Vector2>> outlines;  ///< convex; of these it covers as little as it can
+  bool top_is_free = false;                    ///< of a legend: there is no card
 };
 
 /// Draws the caption's title and lines and returns the card, or nothing if there is nothing to say:
@@ -32,8 +33,9 @@ struct CardArea {
 std::optional<Rect> DrawCaptionCard(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,
                                     const RenderCaption& caption, const CardArea& area);
 
-/// Draws the legend at the lower right, above `bottom`; nothing if it is empty or does not fit.
+/// Draws the legend at the lower right, or at the lower left, or where the top is free at the upper
+/// right, if it covers clearly less there; nothing if it is empty or does not fit.
 std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,
-                               const RenderLegend& legend, double bottom);
+                               const RenderLegend& legend, const CardArea& area);
 
 }  // namespace pregrasp

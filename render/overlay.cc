@@ -103,9 +103,12 @@ class Overlay {
     const Rect footer{0.0, bottom, canvas_.width(), footer_height};
     std::vector<Rect> obstacles = {footer};
     const double note_room = bar ? 0.0 : style_.px(12.0);
-    const auto legend = DrawLegend(canvas_, fonts_, style_, scene_.legend, bottom - note_room);
+    const bool has_card = !caption.title.empty() || !caption.lines.empty();
+    CardArea area{bottom - note_room, {}, Outlines(scene_, view_, true), !has_card};
+    const auto legend = DrawLegend(canvas_, fonts_, style_, scene_.legend, area);
     if (legend) obstacles.push_back(*legend);
-    const CardArea area{bottom, legend, Outlines(scene_, view_, true)};
+    area.bottom = bottom;
+    area.taken = legend;
     if (const auto card = DrawCaptionCard(canvas_, fonts_, style_, caption, area)) {
       obstacles.push_back(*card);
     }

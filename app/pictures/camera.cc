@@ -107,6 +107,19 @@ bool IsInSight(const RenderCamera& camera, const MatrixX3& P_W, double aspect, d
   return true;
 }
 
+MatrixX3 FindOutermost(const MatrixX3& P) {
+  MatrixX3 outermost(26, 3);
+  Eigen::Index count = 0;
+  for (int i = 0; i < 27; ++i) {
+    const Vector3 direction(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    if (direction.isZero()) continue;
+    Eigen::Index at = 0;
+    (P * direction).maxCoeff(&at);
+    outermost.row(count++) = P.row(at);
+  }
+  return outermost;
+}
+
 MatrixX3 FocusAround(const MatrixX3& P_W, double share, double headroom) {
   Vector3 low = P_W.colwise().minCoeff(), high = P_W.colwise().maxCoeff();
   const double longest = (high - low).maxCoeff();

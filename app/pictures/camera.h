@@ -18,6 +18,9 @@ Vector3 ChooseViewDirection(const TriangleMesh& mesh_W, const EnvironmentDistanc
 /// half height from the edge. In a frame in which +z is up.
 bool IsInSight(const RenderCamera& camera, const MatrixX3& P_W, double aspect, double border);
 
+/// Of these points (at least one) the outermost in each of 26 directions evenly around (26 x 3).
+MatrixX3 FindOutermost(const MatrixX3& P);
+
 /// Corners of the box around the object's points, widened on all sides by `share` of its longest
 /// edge, so that the surroundings show and small motions stay in the picture, and along +z by
 /// `headroom` [m] more, for fingers and for the card of text (8 x 3).

@@ -338,9 +338,9 @@ MatrixX3 PictureMaker::CalcFocus(const std::vector<const StepFacts*>& shown,
       overlay.focus_W =
           frame->touching.empty() ? MatrixX3(0, 3) : LinkOrigins(impl_->hand, frame->hand);
     }
-    // Corners of a box do: a mesh may have any number of points.
-    const MatrixX3 seen_U = impl_->FindFocus(*step, overlay, config) * impl_->R_UW.transpose();
-    Append(focus_U, FocusAround(seen_U, 0.0, 0.0));
+    // The outermost do: a mesh may have any number of points.
+    Append(focus_U,
+           FindOutermost(impl_->FindFocus(*step, overlay, config) * impl_->R_UW.transpose()));
   }
   return focus_U * impl_->R_UW;
 }

@@ -146,6 +146,19 @@ TEST_F(PictureMakerTest, OneCameraHasTheObjectInSightInAllStepsThatItIsFramedFor
   }
 }
 
+TEST(FindOutermostTest, TakesCornersAndNothingFromWithin) {
+  MatrixX3 cube_and_more(10, 3);
+  for (int i = 0; i < 8; ++i) cube_and_more.row(i) << i % 2, i / 2 % 2, i / 4;
+  cube_and_more.row(8) << 0.5, 0.5, 0.5;
+  cube_and_more.row(9) << 0.5, 0.5, 1.2;
+  const MatrixX3 outermost = FindOutermost(cube_and_more);
+  for (Eigen::Index i = 0; i < 10; ++i) {
+    const bool found =
+        ((outermost.rowwise() - cube_and_more.row(i)).rowwise().norm().array() == 0.0).any();
+    EXPECT_EQ(found, i != 8) << i;
+  }
+}
+
 TEST_F(PictureMakerTest, AFingerIsWhollyInSightUnlessItHasLeft) {
   for (const bool left : {false, true}) {
     StepFacts step = Pull(Press(0.11, 0.012), 0.03).facts;

@@ -77,6 +77,32 @@ TEST(CaptionTest, TheCardStaysAtTheUpperLeftUnlessAnotherCornerHidesClearlyLess)
   EXPECT_EQ(draw({430.0, taken, {box(0, 0, 400, 450)}}).x, usual.x);  // no corner is free
 }
 
+TEST(CaptionTest, TheLegendStaysAtTheLowerRightUnlessAnotherCornerHidesClearlyLess) {
+  FontSet fonts;
+  RenderLegend legend;
+  legend.title = "cost";
+  legend.swatches = {{BadColor(), "one colour"}, {GoodColor(), "another"}};
+  const auto draw = [&](const CardArea& area) {
+    Image image{800, 450, std::vector<std::uint8_t>(800 * 450 * 3, 200)};
+    Canvas canvas(image, fonts);
+    return DrawLegend(canvas, fonts, OverlayStyle(image, 1.0), legend, area).value_or(Rect());
+  };
+  const auto low = [](double x) {
+    return std::vector<Vector2>{{x, 225}, {800, 225}, {800, 450}, {x, 450}};
+  };
+  const Rect usual = draw({430.0, {}, {}, true});
+  EXPECT_GT(usual.x, 500.0);
+  EXPECT_GT(usual.y, 225.0);
+  EXPECT_EQ(draw({430.0, {}, {low(790)}, true}).x, usual.x);
+  const Rect left = draw({430.0, {}, {low(400)}, true});
+  EXPECT_LT(left.right(), 400.0);
+  EXPECT_EQ(left.y, usual.y);
+  const Rect top = draw({430.0, {}, {low(0)}, true});
+  EXPECT_EQ(top.x, usual.x);
+  EXPECT_LT(top.bottom(), 225.0);
+  EXPECT_EQ(draw({430.0, {}, {low(0)}, false}).y, usual.y);  // the card's
+}
+
 TEST(CaptionTest, WrappedLinesFitAndKeepEveryWord) {
   FontSet fonts;
   const std::string text =
