@@ -16,4 +16,4 @@ for i = 3, 4 do
 end
 print(wild:why())
 print(calm:why())
-s:strip { wild, against = calm, file = "out/forks.png" }
+s:strip { wild, against = calm, file = "out/forks.png", size = { 1280, 960 } }
