@@ -109,7 +109,9 @@ TEST_F(PromptTest, HelpFindsOptionsOverlaysAndWords) {
   const Manual& manual = Manual::Get();
   EXPECT_EQ(manual.Match("sigma").front(), "Optimizer.sigma");
   EXPECT_EQ(manual.Match("sigma").back(), "OptimizeOptions.sigma");
-  EXPECT_EQ(manual.Match("overlay"), (std::vector<std::string>{"Overlay", "ShotOptions.overlay"}));
+  EXPECT_EQ(manual.Match("overlay"),
+            (std::vector<std::string>{"Overlay", "RunStripOptions.overlay", "ShotOptions.overlay",
+                                      "StripOptions.overlay"}));
   EXPECT_EQ(manual.Match("ghost"), (std::vector<std::string>{"Overlay.ghost"}));
   EXPECT_NE(manual.Explain("Overlay.ghost").find("the object at its start"), std::string::npos);
   EXPECT_NE(manual.Explain("Overlay").find("friction cones"), std::string::npos);
