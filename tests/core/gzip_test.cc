@@ -9,7 +9,7 @@ namespace {
 
 TEST(GzipTest, InflateGivesBackWhatWasDeflated) {
   std::string bytes;
-  for (int i = 0; i < 200'000; ++i) bytes += static_cast<char>(i * i / 7);
+  for (unsigned i = 0; i < 200'000; ++i) bytes += static_cast<char>(i * i / 7);
   for (const std::string& text : {std::string(), std::string("one line\n"), bytes}) {
     EXPECT_EQ(Inflate(Deflate(text), "test"), text);
   }
