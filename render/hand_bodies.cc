@@ -4,6 +4,15 @@
 #include "render/palette.h"
 
 namespace pregrasp {
+namespace {
+
+// Without its hue: a blue pad would read as the little finger's contact.
+Rgba WithoutHue(const Rgba& color) {
+  const float luminance = 0.2126F * color.r + 0.7152F * color.g + 0.0722F * color.b;
+  return {luminance, luminance, luminance, color.a};
+}
+
+}  // namespace
 
 void AddHand(RenderScene& scene, const HandModel& hand, const HandConfiguration& configuration,
              const std::array<bool, kNumFingers>& touching) {
@@ -11,8 +20,9 @@ void AddHand(RenderScene& scene, const HandModel& hand, const HandConfiguration&
   for (const HandShape& shape : ShapesOf(hand)) {
     const auto& [r, g, b, a] = shape.rgba;
     Rgba color{r, g, b, a};
-    const std::optional<Finger> finger = hand.FingerOf(shape.link);
-    if (finger && touching[static_cast<int>(*finger)]) color = FingerColor(*finger);
+    if (const std::optional<Finger> finger = hand.FingerOf(shape.link)) {
+      color = touching[static_cast<int>(*finger)] ? FingerColor(*finger) : WithoutHue(color);
+    }
     RenderBody body;
     body.mesh = shape.mesh;
     body.X_WB = X_WL[shape.link];

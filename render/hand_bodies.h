@@ -7,8 +7,8 @@
 
 namespace pregrasp {
 
-/// Adds a hand to a picture, as its URDF's visuals show it.
-/// @param touching  fingers whose last links get the finger's colour.
+/// Adds a hand to a picture, as its URDF's visuals show it, but for the fingers' last links.
+/// @param touching  fingers whose last links get the finger's colour; those of others have none.
 void AddHand(RenderScene& scene, const HandModel& hand, const HandConfiguration& configuration,
              const std::array<bool, kNumFingers>& touching = {});
 

@@ -104,7 +104,8 @@ class Overlay {
     std::vector<Rect> obstacles = {footer};
     const double note_room = bar ? 0.0 : style_.px(12.0);
     const bool has_card = !caption.title.empty() || !caption.lines.empty();
-    CardArea area{bottom - note_room, {}, Outlines(scene_, view_, true), !has_card};
+    CardArea area{bottom - note_room, {}, {}, !has_card};
+    if (!scene_.fixed_corners) area.outlines = Outlines(scene_, view_, true);
     const auto legend = DrawLegend(canvas_, fonts_, style_, scene_.legend, area);
     if (legend) obstacles.push_back(*legend);
     area.bottom = bottom;

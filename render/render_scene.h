@@ -114,7 +114,8 @@ struct RenderScene {
   std::optional<double> ground_z;
   bool axes = true;                       ///< a frame's axes at the origin: x red, y green, z blue
   Matrix3 R_WAxes = Matrix3::Identity();  ///< that frame: the world's own
-  double font_scale = 1.0;                ///< of all type
+  bool fixed_corners = false;  ///< card and legend stay in theirs whatever they hide: in a film
+  double font_scale = 1.0;     ///< of all type
 };
 
 }  // namespace pregrasp

@@ -136,15 +136,18 @@ void WriteFilm(const LoadedRun& run, const Shot& shot, const std::optional<Vecto
   Shot one = shot;
   one.config.width += one.config.width % 2;  // colours at half resolution
   one.config.height += one.config.height % 2;
+  one.config.fixed_corners = true;
   std::vector<StepFacts> frames;
   const int every = file.extension() == ".gif" ? kGifEvery : 1;
   for (int i = 0; i < static_cast<int>(film.size()); i += every) {
     frames.push_back(FrameStep(run, film, i));
   }
   PictureDrawer drawer(run.scene, LabelsOf(run));
-  std::vector<const StepFacts*> framed;
-  for (std::size_t i = 0; i < frames.size(); i += 10) framed.push_back(&frames[i]);
-  framed.push_back(&frames.back());
+  // Not the hand as it comes from far off: what it does would be small.
+  std::vector<const StepFacts*> framed = {&frames.back()};
+  for (std::size_t i = 0; i < frames.size(); i += 10) {
+    if (!std::get<FrameFacts>(frames[i].details).touching.empty()) framed.push_back(&frames[i]);
+  }
   one.config.camera = drawer.FrameSteps(framed, run, one.config, view);
 
   // Beside the file and of its kind, which ffmpeg goes by.

@@ -318,6 +318,7 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
   picture.up_W = impl_->up_W;
   picture.axes = config.axes;
   picture.font_scale = config.font_scale;
+  picture.fixed_corners = config.fixed_corners;
   if (config.card) {
     picture.caption.title = text.title;
     picture.caption.lines = text.lines;
@@ -333,10 +334,9 @@ MatrixX3 PictureMaker::CalcFocus(const std::vector<const StepFacts*>& shown,
   MatrixX3 focus_U = impl_->start_focus_U;
   for (const StepFacts* step : shown) {
     PictureOverlay overlay = Chosen(MakeOverlay(*step, steps, impl_->hand), config);
-    // Of the hand's motion what touches: the hand comes from far off.
+    // Of the hand's motion this step's hand alone, not those before it.
     if (const auto* frame = std::get_if<FrameFacts>(&step->details)) {
-      overlay.focus_W =
-          frame->touching.empty() ? MatrixX3(0, 3) : LinkOrigins(impl_->hand, frame->hand);
+      overlay.focus_W = LinkOrigins(impl_->hand, frame->hand);
     }
     // The outermost do: a mesh may have any number of points.
     Append(focus_U,

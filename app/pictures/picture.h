@@ -30,10 +30,11 @@ struct PictureConfig {
   bool rollouts = true;  ///< where plans leave the object
   bool hand = true;      ///< the whole hand
   // Words, which overlays leave alone:
-  bool card = true;         ///< title and sentences, at the upper left
-  bool legend = true;       ///< what colours mean
-  bool footer = true;       ///< how to make the picture again
-  double font_scale = 1.0;  ///< of all type, of kFontScale
+  bool card = true;            ///< title and sentences, at the upper left
+  bool legend = true;          ///< what colours mean
+  bool footer = true;          ///< how to make the picture again
+  double font_scale = 1.0;     ///< of all type, of kFontScale
+  bool fixed_corners = false;  ///< card and legend stay in theirs whatever they hide: in a film
 
   static constexpr NumberRange kFontScale{0.3, 4.0};
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -11,7 +12,9 @@
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
 #include "app/core/rng.h"
+#include "app/hand/hand_shapes.h"
 #include "render/camera.h"
+#include "render/hand_bodies.h"
 #include "render/palette.h"
 #include "tests/render/sample_scenes.h"
 
@@ -341,6 +344,45 @@ TEST(RendererTest, AMeshMadeWhereADeadOneWasIsDrawnAnew) {
     const auto p = PixelAt(SharedRenderer().Render(scene, {320, 180, RenderQuality::kDraft}), edge);
     EXPECT_EQ(p[2] > p[0] + 40, large) << i;
   }
+}
+
+TEST(HandBodiesTest, TipsThatTouchHaveTheirFingersColourAndOthersNone) {
+  const HandModel& hand = ShadowHand();
+  std::array<bool, kNumFingers> touching{};
+  touching[static_cast<int>(Finger::kIndex)] = true;
+  RenderScene scene;
+  AddHand(scene, hand, {}, touching);
+  const auto shapes = ShapesOf(hand);
+  ASSERT_EQ(scene.bodies.size(), shapes.size());
+  int touched = 0, others = 0;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const std::optional<Finger> finger = hand.FingerOf(shapes[i].link);
+    if (!finger) continue;
+    const Rgba& color = scene.bodies[i].color;
+    if (*finger == Finger::kIndex) {
+      ++touched;
+      EXPECT_EQ(color.r, FingerColor(Finger::kIndex).r);
+      EXPECT_EQ(color.b, FingerColor(Finger::kIndex).b);
+    } else {
+      ++others;
+      EXPECT_EQ(color.r, color.b);
+      EXPECT_EQ(color.r, color.g);
+    }
+  }
+  EXPECT_GE(touched, 1);
+  EXPECT_GE(others, 4);
+}
+
+TEST(RendererTest, ALegendGivesWayToWhatIsShownUnlessItsCornerIsFixed) {
+  RenderScene scene = PlateScene();  // whose legend would lie over a ball
+  const RenderConfig config{320, 180, RenderQuality::kDraft};
+  const Vector2 corner(300, 150);
+  scene.legend = {};
+  const int bare = Brightness(SharedRenderer().Render(scene, config), corner);
+  scene.legend = PlateScene().legend;
+  EXPECT_EQ(Brightness(SharedRenderer().Render(scene, config), corner), bare);
+  scene.fixed_corners = true;
+  EXPECT_LT(Brightness(SharedRenderer().Render(scene, config), corner), bare - 50);
 }
 
 TEST(RendererTest, RenderersComeAndGo) {
