@@ -28,14 +28,14 @@ std::string Compiler() {
 
 namespace {
 
-// "fcl" of .../libfcl.so.0.7.0: "0.7.0".
+// "fcl" of .../libfcl.so.0.7.0: "0.7.0". Of what gives OpenGL the one that draws: MRPT may load
+// others while it works.
 std::map<std::string, std::string> LoadedVersions() {
   const std::map<std::string, std::string> names = {{"assimp", "assimp"},
                                                     {"ccd", "ccd"},
-                                                    {"egl", "EGL"},
                                                     {"fcl", "fcl"},
                                                     {"nlopt", "nlopt"},
-                                                    {"osmesa", "OSMesa"},
+                                                    {PREGRASP_GL, PREGRASP_GL_SONAME},
                                                     {"qhull", "qhull_r"},
                                                     {"simbody", "SimTKsimbody"},
                                                     {"urdfdom", "urdfdom_model"}};
