@@ -136,6 +136,8 @@ class Runner {
 
     const CertifyFacts& facts() const { return std::get<CertifyFacts>(certified->facts.details); }
     int worlds_held() const { return facts().robust ? facts().robust->held : 0; }
+    // 0 to 2: one world more or less does not tell two plans apart.
+    int robustness() const { return worlds_held() / 2; }
   };
 
   // More grasps that lift; among equals, more worlds in which the plan holds (design, section 4).
@@ -171,9 +173,9 @@ class Runner {
     const Node* best = plans.front().end;
     auto next = plans.begin();
     while (next != plans.end() && best->progress.reached != Progress::Reached::kOk) {
-      // Together: plans that hold in at most one world less than the first.
+      // Together: plans that are about as robust as the first.
       const auto end = std::find_if(next, plans.end(), [&](const TriedPlan& plan) {
-        return plan.worlds_held() < next->worlds_held() - 1;
+        return plan.robustness() != next->robustness();
       });
       const Node& moved = TryTogether(optimised, {next, end}, name);
       if (next == plans.begin() || GoesFurther(moved, *best)) best = &moved;
@@ -184,8 +186,7 @@ class Runner {
   }
 
   // Of the path's plans those that cost least, as many as are to be tried, certified: those first
-  // that hold in the most worlds; only the best, which is not certified, if none is. Not all of a
-  // path's plans: what moves the object little holds everywhere, and leads to no grasp.
+  // that hold in the most worlds; only the best, which is not certified, if none is.
   std::vector<TriedPlan> CertifyPlans(const Node& optimised, const std::string& name) {
     const auto count = std::ssize(timeline_.GetState(optimised)->optimization->plans);
     std::vector<TriedPlan> plans;
