@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstring>
 #include <variant>
 
@@ -38,6 +39,8 @@ std::string MjcfShape(const Shape& shape, const std::string& name, std::string* 
 }
 
 std::unique_ptr<mjModel, FreeMujoco> LoadMjcf(const std::string& xml) {
+  // Without a handler MuJoCo leaves a log file in the working directory.
+  mju_user_warning = [](const char* text) { fmt::print(stderr, "MuJoCo: {}\n", text); };
   auto vfs = std::make_unique<mjVFS>();
   mj_defaultVFS(vfs.get());
   mj_makeEmptyFileVFS(vfs.get(), "scene.xml", static_cast<int>(xml.size()));
