@@ -134,10 +134,10 @@ class Runner {
     const Node* end = nullptr;
     std::vector<int> lifting = {};  // the most promising grasp first, by number
 
-    const CertifyFacts& facts() const { return std::get<CertifyFacts>(certified->facts.details); }
-    int worlds_held() const { return facts().robust ? facts().robust->held : 0; }
-    // 0 to 2: one world more or less does not tell two plans apart.
-    int robustness() const { return worlds_held() / 2; }
+    int worlds_held() const {
+      const auto& robust = std::get<CertifyFacts>(certified->facts.details).robust;
+      return robust ? robust->held : 0;
+    }
   };
 
   // More grasps that lift; among equals, more worlds in which the plan holds (design, section 4).
@@ -169,46 +169,13 @@ class Runner {
   const Node& Try(const Node& path, int number) {
     const std::string name = fmt::format("path {} of {}", number, config_.paths);
     const Node& optimised = Optimise(path, name);
-    const std::vector<TriedPlan> plans = CertifyPlans(optimised, name);
-    const Node* best = plans.front().end;
-    auto next = plans.begin();
-    while (next != plans.end() && best->progress.reached != Progress::Reached::kOk) {
-      // Together: plans that are about as robust as the first.
-      const auto end = std::find_if(next, plans.end(), [&](const TriedPlan& plan) {
-        return plan.robustness() != next->robustness();
-      });
-      const Node& moved = TryTogether(optimised, {next, end}, name);
-      if (next == plans.begin() || GoesFurther(moved, *best)) best = &moved;
-      next = end;
-    }
-    const bool ok = best->progress.reached == Progress::Reached::kOk;
-    return ok ? ShowFrames(timeline_, *best) : *best;
-  }
-
-  // Of the path's plans those that cost least, as many as are to be tried, certified: those first
-  // that hold in the most worlds; only the best, which is not certified, if none is.
-  std::vector<TriedPlan> CertifyPlans(const Node& optimised, const std::string& name) {
     const auto count = std::ssize(timeline_.GetState(optimised)->optimization->plans);
     std::vector<TriedPlan> plans;
-    std::optional<TriedPlan> first;
-    for (int plan = 1; plan <= count && std::ssize(plans) < config_.plans; ++plan) {
-      Report(name + ", plans", plan - 1, static_cast<int>(count));
-      const TriedPlan certified = CertifyPlan(optimised, plan, nlohmann::json::object());
-      if (!first) first = certified;
-      if (certified.facts().certified) plans.push_back(certified);
+    int certified = 0;
+    for (int plan = 1; plan <= count && certified < config_.plans; ++plan) {
+      plans.push_back(TryPlan(optimised, plan, {}, name));
+      certified += plans.back().end->progress.reached >= Progress::Reached::kCertified ? 1 : 0;
     }
-    if (plans.empty()) return {*first};
-    std::stable_sort(plans.begin(), plans.end(), [](const TriedPlan& a, const TriedPlan& b) {
-      return a.worlds_held() > b.worlds_held();
-    });
-    return plans;
-  }
-
-  // Grasps of these plans, and hand motions to those that lift; if the hand is too slow, again with
-  // slower plans.
-  const Node& TryTogether(const Node& optimised, std::vector<TriedPlan> plans,
-                          const std::string& name) {
-    for (TriedPlan& plan : plans) TryGrasps(plan, name);
     std::stable_sort(plans.begin(), plans.end(), PromisesMore);
     TriedMotions motions = MoveHands(plans, name);
     if (!motions.done && motions.haste.value_or(1.0) > 1.0) {
@@ -217,7 +184,8 @@ class Runner {
       motions = MoveHands(plans, name);
       if (!motions.done && !GoesFurther(*motions.best, *best)) motions.best = best;
     }
-    return *motions.best;
+    const bool ok = motions.best->progress.reached == Progress::Reached::kOk;
+    return ok ? ShowFrames(timeline_, *motions.best) : *motions.best;
   }
 
   // The best plans with a grasp that lifts, as much slower as the hand needs: certified, completed
@@ -231,8 +199,7 @@ class Runner {
     std::vector<TriedPlan> slowed;
     for (const TriedPlan& plan : plans) {
       if (plan.lifting.empty() || slowed.size() == kSlowed) continue;
-      slowed.push_back(CertifyPlan(optimised, plan.plan, {{"settings", settings}}));
-      TryGrasps(slowed.back(), name);
+      slowed.push_back(TryPlan(optimised, plan.plan, {{"settings", settings}}, name));
     }
     std::stable_sort(slowed.begin(), slowed.end(), PromisesMore);
     return slowed;
@@ -264,24 +231,23 @@ class Runner {
     return tried;
   }
 
-  TriedPlan CertifyPlan(const Node& optimised, int plan, nlohmann::json options) {
+  TriedPlan TryPlan(const Node& optimised, int plan, nlohmann::json options,
+                    const std::string& name) {
+    if (options.is_null()) options = nlohmann::json::object();
     if (plan > 1) options["plan"] = plan;
+    Report(name + ", plans and their grasps", plan - 1, kMostPlans);
     const Node& certified = timeline_.Do(optimised, Verb::kCertify, options);
-    return {plan, &certified, &certified};
-  }
-
-  // Leaves a plan as it is that is not certified, or after which no fingertip finds a free place.
-  void TryGrasps(TriedPlan& plan, const std::string& name) {
-    Report(fmt::format("{}, grasps of plan {}", name, plan.plan), 0, 1);
-    if (!plan.facts().certified ||
-        timeline_.GetState(*plan.certified)->release->conditions.empty()) {
-      return;
+    if (!std::get<CertifyFacts>(certified.facts.details).certified ||
+        timeline_.GetState(certified)->release->conditions.empty()) {
+      return {plan, &certified, &certified};
     }
-    plan.end = &CompleteGrasps(timeline_, *plan.certified, nlohmann::json::object());
-    const auto state = timeline_.GetState(*plan.end);
+    const Node& end = CompleteGrasps(timeline_, certified, nlohmann::json::object());
+    TriedPlan tried{plan, &certified, &end};
+    const auto state = timeline_.GetState(end);
     for (const int number : OrderGrasps(*state)) {
-      if (state->lifts.at(number)->held) plan.lifting.push_back(number);
+      if (state->lifts.at(number)->held) tried.lifting.push_back(number);
     }
+    return tried;
   }
 
   const Node& Optimise(const Node& path, const std::string& name) {

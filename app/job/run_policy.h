@@ -7,7 +7,6 @@
 #include "app/core/number_range.h"
 #include "app/job/run_summary.h"
 #include "app/job/timeline.h"
-#include "app/trajectory/mppi.h"
 
 namespace pregrasp {
 
@@ -17,11 +16,8 @@ struct RunConfig {
   int paths = 10;    ///< full optimisations at most, of kPaths (design: the budget)
   bool all = false;  ///< go on to the last path after the first success
   int motions = 6;   ///< lifting grasps of one path whose hand motion is tried
-  /// Of one path that are certified, their ends differing. Grasps are tried first of those that
-  /// hold in four or five of the changed worlds, where these lead nowhere of those that hold in two
-  /// or three, then of the rest: what moves the object little holds everywhere. Of plans tried
-  /// together the one with most lifting grasps is taken on.
-  int plans = kMostPlans;
+  int plans = 4;     ///< of one path that are certified, their ends differing: of these the one
+                     ///< with most lifting grasps is taken on
   /// Of the planner, by full name, from the graph on; where they are those of the job, none.
   nlohmann::json settings = nlohmann::json::object();
 

@@ -448,7 +448,7 @@ function Session:plan(options) end
 ---@class RunOptions
 ---@field paths? integer to optimise at most; 10
 ---@field all? boolean goes on after the first success; false
----@field plans? integer of a path that are certified at most, of which grasps are tried, of the most robust ones first; 8
+---@field plans? integer of a path that are certified at most; 4
 ---@field motions? integer hand motions tried of a path; 6
 ---@field set? table<string, number|string|boolean> settings of the planner by full name, from the graph on
 

@@ -187,30 +187,19 @@ constexpr char kSameAsRun[] = R"lua(
       while o:step() do end
       local certified = {}
       for plan = 1, 8 do  -- as many as differ
-        local is_one, t = pcall(o.certify, o, {}, plan)
+        local is_one, t
+        if #certified < 4 then is_one, t = pcall(o.certify, o, {}, plan) end
         if not is_one then break end
-        if t.certified then certified[#certified + 1] = { plan = plan, t = t, held = t.robust.held } end
+        if t.certified then certified[#certified + 1] = { held = t.robust.held, grasps = t:grasps {} } end
       end
-      table.sort(certified, function(a, b)
-        if a.held ~= b.held then return a.held > b.held end
-        return a.plan < b.plan
-      end)
-      local next = 1
-      while not done and next <= #certified do
-        local first, level = nil, certified[next].held // 2
-        while next <= #certified and certified[next].held // 2 == level do
-          local x = certified[next]
-          x.grasps = x.t:grasps {}
-          local a, b = x.grasps, first and first.grasps
-          if not b or a.num_lifting > b.num_lifting or a.num_lifting == b.num_lifting and x.held > first.held then
-            first = x
-          end
-          next = next + 1
-        end
-        local best = first.grasps:best()
-        if best and best.lift.held then
-          for frame in best:motion {}:frames() do done = frame.number > 0 end
-        end
+      local first = certified[1]
+      for _, x in ipairs(certified) do
+        local a, b = x.grasps, first.grasps
+        if a.num_lifting > b.num_lifting or a.num_lifting == b.num_lifting and x.held > first.held then first = x end
+      end
+      local best = first and first.grasps:best()
+      if best and best.lift.held then
+        for frame in best:motion {}:frames() do done = frame.number > 0 end
       end
     end
   end
@@ -274,10 +263,9 @@ int CountLifting(const LoadedRun& run, const CertifyFacts* certified) {
   }));
 }
 
-// The main job with the weights that ship, as a user starts it: of the first path's plans those are
-// tried first that hold in the most changed worlds, and of these the one with most lifting grasps
-// is taken on. A plan with more of them has been tried before, in vain.
-TEST(MainJobTest, TheRulerIsGraspedByARobustPlanWithMostLiftingGrasps) {
+// The main job with the weights that ship, as a user starts it: of the first path's plans the one
+// with most lifting grasps is taken on. A plan with more of them has been tried before, in vain.
+TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
   const TestFolder temporary;
   const fs::path& folder = temporary.path();
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
@@ -297,28 +285,16 @@ TEST(MainJobTest, TheRulerIsGraspedByARobustPlanWithMostLiftingGrasps) {
       return step.stage() == "motion" && run.FindBefore<CertifyFacts>(step) == plan;
     });
   };
-  const auto has_grasps = [&](const CertifyFacts* plan) {
-    return std::any_of(run.steps.begin(), run.steps.end(), [&](const StepFacts& step) {
-      return std::holds_alternative<GraspFacts>(step.details) &&
-             run.FindBefore<CertifyFacts>(step) == plan;
-    });
-  };
-  int certified = 0, completed = 0;
+  int certified = 0;
   for (const StepFacts& step : run.steps) {
     const auto* plan = std::get_if<CertifyFacts>(&step.details);
     if (plan == nullptr || !plan->certified || plan->path != taken->path) continue;
     ++certified;
-    if (!has_grasps(plan)) {
-      EXPECT_LT(plan->robust->held / 2, taken->robust->held / 2) << step.id;
-      continue;
-    }
-    ++completed;
     if (plan == taken || has_motion(plan)) continue;
     EXPECT_LE(CountLifting(run, plan), CountLifting(run, taken)) << step.id;
   }
   EXPECT_GE(certified, 2);
   EXPECT_LE(certified, RunConfig().plans);
-  EXPECT_GE(completed, 1);
 
   // The same run as an animation and as a scene of MRPT's; what fits neither is one line.
   const auto show = [&](std::vector<std::string> arguments) {
