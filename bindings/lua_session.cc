@@ -49,9 +49,16 @@ Vector3 CalcRpyDeg(const Matrix3& R) {
   return Vector3(std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))) * (180.0 / kPi);
 }
 
+void RequirePng(const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".png") return;
+  throw InputError("", "file", "the name of a picture, \"out/NAME.png\"",
+                   '"' + OneLine(file) + '"');
+}
+
 }  // namespace
 
 std::filesystem::path PictureFile(lua_State* L, const std::string& file) {
+  RequirePng(file);
   const std::filesystem::path path = Machine::Of(L).files().ResolveForWriting(file);
   RequireOutsideRuns(path);
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
@@ -100,10 +107,7 @@ ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::stri
 void TakeShot(lua_State* L, Session& session, const Timeline::Node& node,
               const ShotOptions& options) {
   if (options.file) {
-    if (std::filesystem::path(*options.file).extension() != ".png") {
-      throw InputError("", "file", "the name of a picture, \"out/NAME.png\"",
-                       '"' + OneLine(*options.file) + '"');
-    }
+    RequirePng(*options.file);
     session.ShootToFile(node, options.shot,
                         Machine::Of(L).files().ResolveForWriting(*options.file));
   } else {

@@ -134,7 +134,7 @@ Api MakeApi() {
        {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas(), GraspSchemas(),
         StageOptionSchemas(), GraphSchemas(), TrajectorySchemas(), GraspStageSchemas(),
         MotionSchemas(), EventSchemas(), ReasonSchemas(), RolloutSchemas(), TimelineSchemas(),
-         RunSchemas(), WhatIfSchemas(), PlanSchemas(), StudySchemas()}) {
+        RunSchemas(), WhatIfSchemas(), PlanSchemas(), StudySchemas()}) {
     api.schemas.insert(api.schemas.end(), schemas.begin(), schemas.end());
   }
   return api;

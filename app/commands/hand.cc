@@ -10,6 +10,7 @@
 #include "app/hand/hand_measures.h"
 #include "app/hand/hand_shapes.h"
 #include "app/hand/ik.h"
+#include "app/recording/partial_directory.h"
 #include "render/hand_bodies.h"
 #include "render/renderer.h"
 
@@ -146,6 +147,8 @@ int CheckHand(const HandOptions& options) {
           fmt::format("tips that stay {:.0f} mm apart", 1e3 * measures.nearest[f]));
     }
   }
+  const fs::path out = options.out.empty() ? fs::path("out") / ("hand_" + hand.name) : options.out;
+  if (reading.faults.empty()) RequireOutsideRuns(out / "pictures");
   for (const InputError& fault : reading.faults) fmt::print(stderr, "{}\n", fault.what());
   if (!reading.faults.empty()) return 2;
   fmt::print("{}: {} fingers, {} joints, {:.2f} kg\n", hand.name, hand.num_fingers, hand.num_joints,
@@ -153,8 +156,7 @@ int CheckHand(const HandOptions& options) {
   for (int f = 0; f < hand.num_fingers; ++f) PrintFinger(hand, measures, f);
   fmt::print("  free of itself in {:.0f} % of random postures\n", 100.0 * measures.free_share);
   for (const std::string& note : reading.notes) fmt::print("  note: {}\n", note);
-  DrawPoses(hand, measures,
-            options.out.empty() ? fs::path("out") / ("hand_" + hand.name) : options.out);
+  DrawPoses(hand, measures, out);
   return 0;
 }
 

@@ -17,6 +17,7 @@
 #include "app/page/run_steps.h"
 #include "app/page/strip.h"
 #include "app/recording/loaded_run.h"
+#include "app/recording/partial_directory.h"
 #include "app/session/motion_film.h"
 #include "app/session/picture_file.h"
 
@@ -172,6 +173,7 @@ int ShowFilm(const ShowOptions& options) {
 
 int Show(const ShowOptions& options) {
   const std::filesystem::path out = options.out;
+  RequireOutsideRuns(out);
   const std::string kind = out.extension().string();
   if (!options.what.empty() && kind != ".svg") {
     throw InputError("--what", "", "a drawing, --out FILE.svg", options.out);

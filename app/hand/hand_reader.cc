@@ -18,10 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSamePlace = 1e-7;  // [m]; the file's numbers carry nine decimals
-constexpr double kTipAtEnd = 1e-6;   // [m], of a capsule
-constexpr double kTipInside = 5e-4;  // [m], of what a fingertip may lie within its link
-constexpr double kTipFar = 2e-3;     // [m], of what it may be off it
+constexpr double kSamePlace = 1e-7;     // [m]; the file's numbers carry nine decimals
+constexpr double kTipAtEnd = 1e-6;      // [m], of a capsule
+constexpr double kTipInside = 5e-4;     // [m], of what a fingertip may lie within its link
+constexpr double kMaxLinkMass = 100.0;  // [kg]
+constexpr double kTipFar = 2e-3;        // [m], of what it may be off it
 
 // The file below one of the folders that a hand's files may lie in.
 fs::path FindFile(const fs::path& file, const fs::path& description, const std::string& what) {
@@ -59,7 +60,10 @@ class Reader {
     const fs::path file = FindFile(description_.urdf, description_.file, "urdf");
     urdf_file_ = file;
     const std::string text = ReadUrdfText(file);
-    urdf_ = ParseUrdf(file, text);
+    std::string complaint;
+    urdf_ = ParseUrdf(file, text, &complaint);
+    if (!complaint.empty())
+      reading_.faults.emplace_back(file.string(), "", "a URDF that is read whole", complaint);
     model_.name = description_.name;
     model_.file = description_.file;
     model_.files = {description_.file, file};
@@ -251,8 +255,10 @@ class Reader {
 
   // That of a body: positive, and no moment above the sum of the other two.
   void CheckInertia(const HandLink& link) {
-    if (!(link.mass > 0.0 && std::isfinite(link.mass))) {
-      AddUrdfFault(link.name + ".inertial", "a mass above 0 kg", FormatDouble(link.mass));
+    if (!(link.mass > 0.0 && link.mass <= kMaxLinkMass)) {
+      AddUrdfFault(link.name + ".inertial",
+                   fmt::format("a mass above 0 and at most {} kg", kMaxLinkMass),
+                   FormatDouble(link.mass));
       return;
     }
     const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(link.I_LLcm).eigenvalues();

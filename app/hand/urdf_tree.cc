@@ -80,12 +80,14 @@ std::string ReadUrdfText(const fs::path& file) {
   return text;
 }
 
-urdf::ModelInterfaceSharedPtr ParseUrdf(const fs::path& file, const std::string& text) {
-  FirstComplaint complaint;
-  console_bridge::useOutputHandler(&complaint);
+urdf::ModelInterfaceSharedPtr ParseUrdf(const fs::path& file, const std::string& text,
+                                        std::string* complaint) {
+  FirstComplaint first;
+  console_bridge::useOutputHandler(&first);
   urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
   console_bridge::restorePreviousOutputHandler();
-  if (!model) throw InputError(file.string(), "", "a valid URDF description", complaint.text());
+  if (!model) throw InputError(file.string(), "", "a valid URDF description", first.text());
+  *complaint = first.text();
   RequireTree(file, *model);
   return model;
 }

@@ -16,8 +16,10 @@ namespace pregrasp {
 std::string ReadUrdfText(const std::filesystem::path& file);
 
 /// The links and joints of a URDF, which form a tree. `file` is what errors name.
+/// @param complaint  set to what the parser said of a part that it left out, if there is one.
 /// @throws InputError
-urdf::ModelInterfaceSharedPtr ParseUrdf(const std::filesystem::path& file, const std::string& text);
+urdf::ModelInterfaceSharedPtr ParseUrdf(const std::filesystem::path& file, const std::string& text,
+                                        std::string* complaint);
 
 Vector3 FromUrdf(const urdf::Vector3& v);
 RigidTransform FromUrdf(const urdf::Pose& pose);

@@ -62,6 +62,12 @@ LoadedRun LoadRun(const std::filesystem::path& directory) {
     run.steps.push_back(FactsFromJson(line, where));
     run.number_of[run.steps.back().id] = static_cast<int>(run.steps.size());
   });
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {  // what is followed back comes to an end
+    const auto parent = run.number_of.find(run.steps[i].command.node);
+    if (parent == run.number_of.end() || parent->second <= static_cast<int>(i)) continue;
+    throw InputError((directory / "steps.jsonl").string() + ':' + std::to_string(i + 1),
+                     "command.node", "the id of an earlier step", '"' + parent->first + '"');
+  }
   run.journal = LoadJournal(directory);
   return run;
 }

@@ -1,4 +1,5 @@
 #include "app/studies/eval.h"
+#include "app/recording/partial_directory.h"
 
 #include <cstdlib>
 #include <set>
@@ -169,6 +170,7 @@ bool RunEval(const EvalConfig& config, const std::function<void(const EvalProgre
   config.setup.run.Validate();
   RequireDistinct(config.setup.scenes);
   RequireRules(config.setup);
+  RequireOutsideRuns(config.out / "items");
   const StudyInfo& info = FindStudy(config.study);
   const std::unique_ptr<Study> study = info.make(config.setup);
   BatchRun run;

@@ -77,33 +77,34 @@ Json RepeatLabels(std::int64_t index, std::uint64_t seed, bool by_room, ThreadPo
   items.motion.pushes = config.pushes;
   items.motion.states = config.states;
   const auto draw = [&](std::uint64_t purpose, std::uint64_t repeat) {
-    return Rng(items.item.seed, RngStream::kProbedLabels, index, purpose, repeat).NextU64();
+    return Rng(items.item.seed, RngStream::kProbedLabels, index, purpose, repeat);
   };
   const SceneObject object = MakeItemObject(items.item, index);
   const PointCloud cloud = MakeItemCloud(items.item, object, index);
   Scene scene;
   for (int tries = 0; scene.bodies.size() < 2; ++tries) {
-    scene = SampleRestingScene(object, Rng(draw(0, tries), RngStream::kItemScene)).scene;
+    scene = SampleRestingScene(object, draw(0, tries)).scene;
   }
   const World world(scene);
   const GraspWorld grasp_world = MakeTrainingWorld(scene);
   std::vector<std::optional<GraspRoom>> rooms(config.repeats + 1);
-  for (int r = 0; r <= config.repeats; ++r) rooms[r].emplace(grasp_world, items.room, draw(1, r));
+  for (int r = 0; r <= config.repeats; ++r)
+    rooms[r].emplace(grasp_world, items.room, draw(1, r).NextU64());
   const std::vector<ReachedState> states =
-      SampleMotionStates(world, grasp_world, *rooms[0], items.motion, draw(2, 0));
+      SampleMotionStates(world, grasp_world, *rooms[0], items.motion, draw(2, 0).NextU64());
 
   std::vector<std::vector<TruthRecord>> first(states.size());
   pool.ParallelFor(static_cast<int>(states.size()), [&](int s, int) {
-    first[s] =
-        LabelState(&world, grasp_world, *rooms[0], cloud, states[s], items.labels, draw(3 + s, 0))
-            .truths;
+    first[s] = LabelState(&world, grasp_world, *rooms[0], cloud, states[s], items.labels,
+                          draw(3 + s, 0).NextU64())
+                   .truths;
   });
   // The first labels favour the sets near which their contacts were drawn, so they do not count.
   std::vector<std::vector<TruthRecord>> again(states.size() * config.repeats);
   pool.ParallelFor(static_cast<int>(again.size()), [&](int i, int) {
     const int s = i / config.repeats, r = 1 + i % config.repeats;
     again[i] = LabelAgain(&world, grasp_world, *rooms[r], cloud, states[s], items.labels, first[s],
-                          draw(3 + s, r));
+                          draw(3 + s, r).NextU64());
   });
 
   Json progress = Json::array(), lifted = Json::array();

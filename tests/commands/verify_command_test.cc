@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <regex>
 
 #include "app/core/data_folder.h"
 #include "app/session/verification.h"
@@ -208,10 +209,38 @@ TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
   EXPECT_NE(ReadFile(folder_ / "graph.svg").find("contact states kept"), std::string::npos);
   EXPECT_EQ(show({"--what", "graph"}).err,
             "--what: expected a drawing, --out FILE.svg, got shown.png\n");
+  for (const std::vector<std::string>& into :
+       {std::vector<std::string>{"show", one.string(), "--out", (one / "sheet.png").string()},
+        {"hand", "check", "four_finger", "--out", one.string()},
+        {"eval", "--scenes", kRuler, "--seeds", "1", "--out", one.string()}}) {
+    result = RunProgram(into, folder_);
+    EXPECT_EQ(result.code, 2) << into.front();
+    EXPECT_NE(result.err.find("expected a place outside of run directories"), std::string::npos)
+        << result.err;
+  }
+  EXPECT_EQ(VerifyManifest(one), std::nullopt);
   const fs::path rough = MakeFailingRun("rough", {"--set", "object.friction=0.25"});
   result = RunProgram({"diff", one.string(), rough.string()}, folder_);
   EXPECT_EQ(result.out.rfind("path.1.screen.1: ", 0), 0U) << result.out;
   EXPECT_NE(result.out.find("\nscene\n  bodies[0].friction"), std::string::npos) << result.out;
+}
+
+// Whoever follows a step's parents comes to an end, whatever a file says.
+TEST_F(VerifyCommandTest, StepsThatGoRoundInACircleAreRefused) {
+  const fs::path run = MakeFailingRun("circle");
+  const std::string steps = ReadFile(run / "steps.jsonl");
+  const std::regex node("\"node\":\"[^\"]+\"");
+  for (const std::string& id : {std::string("graph.score"), LoadRun(run).steps.back().id}) {
+    WriteFile(run / "steps.jsonl", std::regex_replace(steps, node, "\"node\":\"" + id + '"'));
+    for (const char* out : {"step.png", "page.html"}) {
+      const ProgramResult result =
+          RunProgram({"show", run.string(), "--out", (folder_ / out).string()}, folder_);
+      EXPECT_EQ(result.code, 2);
+      EXPECT_NE(result.err.find("command.node: expected the id of an earlier step"),
+                std::string::npos)
+          << result.err;
+    }
+  }
 }
 
 // The main job with the weights that ship, with pictures of key steps.

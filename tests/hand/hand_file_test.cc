@@ -130,8 +130,9 @@ TEST_F(HandFileTest, AUrdfThatIsNoHandIsNamedInOneLine) {
               HasSubstr("I_ABD: expected a limit of velocity above 0 rad/s"));
   EXPECT_THAT(FaultsOfUrdf("<axis xyz=\"0 -1 0\"/>", "<axis xyz=\"0 -2 0\"/>"),
               HasSubstr("I_ABD: expected an axis of length 1, got 2"));
-  EXPECT_THAT(FaultsOfUrdf("<mass value=\"0.042\"/>", "<mass value=\"0\"/>"),
-              HasSubstr("index_proximal.inertial: expected a mass above 0 kg, got 0"));
+  EXPECT_THAT(
+      FaultsOfUrdf("<mass value=\"0.042\"/>", "<mass value=\"0\"/>"),
+      HasSubstr("index_proximal.inertial: expected a mass above 0 and at most 100 kg, got 0"));
   EXPECT_THAT(
       FaultsOfUrdf("ixx=\"1.5e-05\"", "ixx=\"5e-03\""),
       HasSubstr("index_proximal.inertial: expected moments of inertia that a body can have"));
@@ -146,6 +147,10 @@ TEST_F(HandFileTest, AUrdfThatIsNoHandIsNamedInOneLine) {
   EXPECT_THAT(
       FaultsOfUrdf(tip, ""),
       HasSubstr("thumb_distal.collision: expected the shape of the finger's last link, got none"));
+  EXPECT_THAT(FaultsOfUrdf("<cylinder radius=\"0.0112\"", "<cylinder radius=\"nan\""),
+              HasSubstr("expected a URDF that is read whole"));
+  EXPECT_THAT(FaultsOfUrdf("<mass value=\"0.042\"/>", "<mass value=\"1e300\"/>"),
+              HasSubstr("index_proximal.inertial: expected a mass above 0 and at most 100 kg"));
   std::string deep;
   for (int i = 0; i < 2000; ++i) deep += "<a>";
   EXPECT_THAT(FaultsOfUrdf("<link name=\"palm\">", deep), HasSubstr("10000 elements, 100 deep"));
