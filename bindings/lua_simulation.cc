@@ -117,7 +117,7 @@ void SimTouch(lua_State* L, LuaSimulation& sim, const TouchOptions& options) {
 }
 
 bool SimMove(lua_State* L, LuaSimulation& sim, const MoveOptions& options) {
-  const Vector3& from =
+  const Vector3 from =
       sim.simulation()->state().fingers[static_cast<int>(options.finger)].p_WTarget;
   const Vector3 to = options.to ? *options.to : Vector3(from + *options.by);
   return Act(L, sim, Verb::kMove,

@@ -40,9 +40,7 @@ void PrintSideBySide(const std::string& title, const nlohmann::ordered_json& lef
 
 int Diff(const DiffOptions& options) {
   for (const std::string& run : {options.left, options.right}) {
-    if (!IsFinishedRun(run)) {
-      throw InputError(run, "", "a finished run", "a folder without its manifest.json");
-    }
+    RequireFinishedRun(run);
   }
   RunComparison comparison(0.0);
   comparison.CompareRuns(options.left, options.right);

@@ -17,6 +17,7 @@
 #include "app/page/run_steps.h"
 #include "app/page/strip.h"
 #include "app/recording/loaded_run.h"
+#include "app/recording/manifest.h"
 #include "app/recording/partial_directory.h"
 #include "app/session/motion_film.h"
 #include "app/session/picture_file.h"
@@ -174,6 +175,11 @@ int ShowFilm(const ShowOptions& options) {
 int Show(const ShowOptions& options) {
   const std::filesystem::path out = options.out;
   RequireOutsideRuns(out);
+  if (IsFinishedRun(options.run)) {
+    if (const auto mismatch = VerifyManifest(options.run)) {
+      fmt::print(stderr, "{}: warning: {}\n", options.run, mismatch->Sentence());
+    }
+  }
   const std::string kind = out.extension().string();
   if (!options.what.empty() && kind != ".svg") {
     throw InputError("--what", "", "a drawing, --out FILE.svg", options.out);

@@ -48,10 +48,7 @@ std::vector<Command> LoadJournal(const std::filesystem::path& directory) {
 }
 
 LoadedRun LoadRun(const std::filesystem::path& directory) {
-  if (!IsFinishedRun(directory)) {
-    throw InputError(directory.string(), "", "a finished run",
-                     "a folder without its manifest.json");
-  }
+  RequireFinishedRun(directory);
   LoadedRun run;
   run.directory = directory;
   const std::filesystem::path manifest = directory / "manifest.json";

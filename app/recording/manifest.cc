@@ -115,6 +115,14 @@ bool IsFinishedRun(const fs::path& directory) {
   return ParseManifest(ReadFile(directory / kName)).has_value();
 }
 
+void RequireFinishedRun(const fs::path& directory) {
+  if (IsFinishedRun(directory)) return;
+  std::error_code error;
+  throw InputError(
+      directory.string(), "", "a finished run",
+      fs::exists(directory, error) ? "one without a whole manifest.json" : "nothing there");
+}
+
 std::optional<std::string> FindExtraFile(const fs::path& directory) {
   const auto hashes = ParseManifest(ReadFile(directory / kName));
   PREGRASP_CHECK(hashes.has_value(), directory);

@@ -36,6 +36,8 @@ void WriteManifest(const std::filesystem::path& directory, const nlohmann::order
 /// Whether `directory` holds a manifest.json of a run, which is what makes it a finished run.
 /// Compares no hashes.
 bool IsFinishedRun(const std::filesystem::path& directory);
+/// @throws InputError unless it is one.
+void RequireFinishedRun(const std::filesystem::path& directory);
 
 /// The first file that the manifest lists and the directory lacks, that the directory has and the
 /// manifest does not list, or whose bytes are not those that were written; manifest.json itself

@@ -30,9 +30,7 @@ SessionConfig RunSessionConfig(const std::filesystem::path& run, int threads,
 
 ResumedSession ResumeSession(const std::filesystem::path& run, int threads,
                              const std::filesystem::path& weights) {
-  if (!IsFinishedRun(run)) {
-    throw InputError(run.string(), "", "a finished run", "a folder without its manifest.json");
-  }
+  RequireFinishedRun(run);
   const Provenance provenance = FindProvenance(run, weights);
   if (const auto mismatch = VerifyManifest(run)) {
     throw InputError(run.string(), "", "the files that were written", mismatch->Sentence());

@@ -225,9 +225,16 @@ TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
   EXPECT_NE(result.out.find("\nscene\n  bodies[0].friction"), std::string::npos) << result.out;
 }
 
-// Whoever follows a step's parents comes to an end, whatever a file says.
-TEST_F(VerifyCommandTest, StepsThatGoRoundInACircleAreRefused) {
+// Files that were changed are shown with a warning; whoever follows a step's parents comes to an
+// end, whatever the file says.
+TEST_F(VerifyCommandTest, ChangedRunsAreWarnedOfAndStepsThatGoRoundInACircleRefused) {
   const fs::path run = MakeFailingRun("circle");
+  WriteFile(run / "run.rawlog", ReadFile(run / "run.rawlog") + "more");
+  const ProgramResult changed = RunProgram(
+      {"show", run.string(), "--step", "scene.start", "--out", (folder_ / "a.png").string()},
+      folder_);
+  EXPECT_EQ(changed.code, 0);
+  EXPECT_EQ(changed.err, run.string() + ": warning: run.rawlog was changed\n");
   const std::string steps = ReadFile(run / "steps.jsonl");
   const std::regex node("\"node\":\"[^\"]+\"");
   for (const std::string& id : {std::string("graph.score"), LoadRun(run).steps.back().id}) {
