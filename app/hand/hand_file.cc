@@ -99,7 +99,7 @@ class Converter {
     for (lua_pushnil(L_); lua_next(L_, -2) != 0; lua_pop(L_, 1)) {
       if (lua_type(L_, -2) == LUA_TSTRING) {
         const std::string key = std::string(lua_tostring(L_, -2));
-        object[key] = Convert(path.empty() ? key : path + '.' + key, depth + 1);
+        object[key] = Convert(path.empty() ? key : fmt::format("{}.{}", path, key), depth + 1);
       } else if (!lua_isinteger(L_, -2) || lua_tointeger(L_, -2) < 1 ||
                  lua_tointeger(L_, -2) > static_cast<lua_Integer>(list.size())) {
         throw InputError(where_, path, "names, or items from 1 on", "another key");
@@ -214,7 +214,7 @@ class Value {
   }
   // A word that can stand in a table of numbers.
   std::string Name() const {
-    const std::string name = Text();
+    std::string name = Text();
     const bool legal = !name.empty() && name.size() <= 64 &&
                        name.find_first_not_of(
                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"

@@ -78,7 +78,7 @@ class Measurer {
   // The posture with the least of a measure; of those in which the hand is free, if there are any.
   template <typename Measure>
   HandJoints Best(const std::vector<HandJoints>& postures, const Measure& measure) const {
-    const HandJoints* best = nullptr;
+    const HandJoints* best = &postures.front();
     double least = std::numeric_limits<double>::infinity();
     bool best_free = false;
     for (const HandJoints& q : postures) {

@@ -77,6 +77,7 @@ Image DrawColumns(const PairBranch& left, const PairBranch& right,
                   const Shot& shot, const std::optional<Vector3>& view) {
   constexpr int kLines = 6;
   std::vector<StripStep> steps;
+  steps.reserve(2 * columns.size());
   for (const Column& column : columns) steps.push_back({column.first, left.steps, left.drawer});
   for (const Column& column : columns) steps.push_back({column.second, right.steps, right.drawer});
   PictureGrid grid;

@@ -107,6 +107,7 @@ Image DrawStripOfRun(const LoadedRun& run, const std::vector<std::string>& ids, 
                      const std::optional<Vector3>& view) {
   PictureDrawer drawer(run.scene, LabelsOf(run));
   std::vector<StripStep> steps;
+  steps.reserve(ids.size());
   for (const std::string& id : ids) steps.push_back({&run.Get(id), &run, &drawer});
   return DrawStrip(steps, shot, view);
 }
