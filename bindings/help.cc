@@ -80,9 +80,8 @@ std::string ExplainWord(const std::string& word) {
     const std::size_t separator = name.find_first_of(".:");
     if (separator != std::string::npos) names.push_back(name.substr(separator + 1));
   }
-  const std::string nearest = FindNearest(word, names);
   throw InputError("help: nothing is called \"" + word + "\"" +
-                   (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+                   FormatHint(FindNearest(word, names)));
 }
 
 }  // namespace

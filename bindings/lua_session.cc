@@ -160,10 +160,8 @@ int FindBody(const Scene& scene, const std::string& name) {
     if (scene.bodies[i].name == name) return static_cast<int>(i);
     names.push_back(scene.bodies[i].name);
   }
-  const std::string nearest = FindNearest(name, names);
-  throw InputError(
-      "", "name", "a body of the scene",
-      '"' + name + '"' + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+  throw InputError("", "name", "a body of the scene",
+                   '"' + name + '"' + FormatHint(FindNearest(name, names)));
 }
 
 void CountMemory(lua_State* L, int kibibytes) { lua_gc(L, LUA_GCSTEP, kibibytes); }

@@ -65,8 +65,7 @@ int UnknownVariable(lua_State* L) {
     std::sort(known.begin(), known.end());
     std::string nearest = FindNearest(name, known);
     if (IsInModule(L, name)) nearest = "pg." + name;
-    throw InputError("unknown variable \"" + name + "\"" +
-                     (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+    throw InputError("unknown variable \"" + name + "\"" + FormatHint(nearest));
   });
 }
 

@@ -32,7 +32,7 @@ fs::path FindScene(Machine& machine, const std::string& name) {
     const std::string nearest = FindNearest(fs::path(name).stem().string(), stems);
     if (nearest.empty()) throw;
     throw InputError(error.where(), error.field(), error.expected(),
-                     error.got() + " (did you mean \"scenes/" + nearest + ".lua\"?)");
+                     error.got() + FormatHint("scenes/" + nearest + ".lua"));
   }
 }
 

@@ -176,7 +176,7 @@ std::string UnknownKeyMessage(const std::string& what, const std::string& key,
   std::string message = what.empty() ? "" : what + ": ";
   message += "unknown key \"" + key + "\"";
   const std::string nearest = FindNearest(key, legal);
-  if (!nearest.empty()) return message + " (did you mean \"" + nearest + "\"?)";
+  if (!nearest.empty()) return message + FormatHint(nearest);
   std::string all;
   for (const std::string& name : legal) all += (all.empty() ? "" : ", ") + name;
   return message + " (the keys are " + all + ")";

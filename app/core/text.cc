@@ -66,4 +66,9 @@ std::string FindNearest(std::string_view word, const std::vector<std::string>& c
   return nearest;
 }
 
+std::string FormatHint(std::string_view nearest) {
+  if (nearest.empty()) return "";
+  return " (did you mean \"" + std::string(nearest) + "\"?)";
+}
+
 }  // namespace pregrasp

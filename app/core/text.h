@@ -19,4 +19,7 @@ std::string OneLine(std::string_view text);
 /// first.
 std::string FindNearest(std::string_view word, const std::vector<std::string>& candidates);
 
+/// ` (did you mean "nearest"?)`, to be put behind a wrong word; "" where `nearest` is empty.
+std::string FormatHint(std::string_view nearest);
+
 }  // namespace pregrasp

@@ -174,9 +174,8 @@ class Value {
     if (!json_.is_object()) Fail("a table with names");
     for (const auto& [key, value] : json_.items()) {
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      const std::string nearest = FindNearest(key, known);
       throw InputError(where_, Path(key), "a key of this table",
-                       nearest.empty() ? "" : "(did you mean \"" + nearest + "\"?)");
+                       '"' + key + '"' + FormatHint(FindNearest(key, known)));
     }
   }
 

@@ -28,10 +28,8 @@ fs::path FileOfHand(const std::string& name_or_file) {
     names.push_back(name);
     listed += (listed.empty() ? "" : ", ") + name;
   }
-  const std::string nearest = FindNearest(name_or_file, names);
-  throw InputError(
-      "", "hand", "the name of a hand (" + listed + ") or a hand.lua",
-      '"' + name_or_file + '"' + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+  throw InputError("", "hand", "the name of a hand (" + listed + ") or a hand.lua",
+                   '"' + name_or_file + '"' + FormatHint(FindNearest(name_or_file, names)));
 }
 
 }  // namespace

@@ -99,10 +99,7 @@ class Reader {
   std::string NearestLink(const std::string& name) const {
     std::vector<std::string> names;
     for (const auto& [link, value] : urdf_->links_) names.push_back(link);
-    return Hint(FindNearest(name, names));
-  }
-  static std::string Hint(const std::string& nearest) {
-    return nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)";
+    return FormatHint(FindNearest(name, names));
   }
 
   bool RequireLink(const std::string& name, const std::string& field) {
@@ -154,7 +151,7 @@ class Reader {
       std::vector<std::string> names;
       for (const auto& [name, value] : urdf_->joints_) names.push_back(name);
       AddFault(field, "a joint of the URDF",
-               '"' + wanted.urdf + '"' + Hint(FindNearest(wanted.urdf, names)));
+               '"' + wanted.urdf + '"' + FormatHint(FindNearest(wanted.urdf, names)));
       return false;
     }
     HandJoint& out = model_.joints[index];
@@ -459,7 +456,7 @@ class Reader {
       const auto found = std::find(names.begin(), names.end(), name);
       if (found == names.end()) {
         AddFault("posture." + name, "a joint of the description",
-                 '"' + name + '"' + Hint(FindNearest(name, names)));
+                 '"' + name + '"' + FormatHint(FindNearest(name, names)));
         continue;
       }
       const auto j = found - names.begin();
@@ -505,7 +502,7 @@ class Reader {
       for (const std::string& name : {a, b}) {
         if (std::find(names.begin(), names.end(), name) != names.end()) continue;
         AddFault(fmt::format("may_touch[{}]", i + 1), "the palm or a link that a joint moves",
-                 '"' + name + '"' + Hint(FindNearest(name, names)));
+                 '"' + name + '"' + FormatHint(FindNearest(name, names)));
       }
       allowed.insert({a, b});
       allowed.insert({b, a});

@@ -1,7 +1,5 @@
 #include "app/scene/settings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <functional>
@@ -141,12 +139,12 @@ void RequireNoSettingsLeft(const std::vector<Setting>& settings,
   if (settings.empty()) return;
   const std::string& key = settings.front().key;
   const std::string nearest = FindNearest(key, known);
-  throw InputError(
-      kWhere, "",
-      nearest.empty() ? "a key that can be set, as object.mass or mppi.sigma (pregrasp info "
-                        "--settings lists the planner's)"
-                      : "a key that can be set",
-      fmt::format("\"{}\"{}", key, nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+  throw InputError(kWhere, "",
+                   nearest.empty()
+                       ? "a key that can be set, as object.mass or mppi.sigma (pregrasp info "
+                         "--settings lists the planner's)"
+                       : "a key that can be set",
+                   "\"" + key + "\"" + FormatHint(nearest));
 }
 
 }  // namespace pregrasp

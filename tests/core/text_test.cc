@@ -33,6 +33,8 @@ TEST(FindNearestTest, FindsTypingErrorsAndNothingFarFetched) {
   EXPECT_EQ(FindNearest("weight", keys), "");
   EXPECT_EQ(FindNearest("bx", {"box", "boxes"}), "box");
   EXPECT_EQ(FindNearest("", keys), "");
+  EXPECT_EQ(FormatHint(FindNearest("fricton", keys)), " (did you mean \"friction\"?)");
+  EXPECT_EQ(FormatHint(FindNearest("weight", keys)), "");
 }
 
 }  // namespace
