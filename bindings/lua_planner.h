@@ -210,6 +210,8 @@ Pushed PathOptimize(lua_State* L, LuaPath& path, const OptimizeOptions& options)
 Pushed TrajectoryGrasps(lua_State* L, LuaTrajectory& trajectory, const GraspsOptions& options);
 Pushed GraspMotion(lua_State* L, LuaGrasp& grasp, const MotionOptions& options);
 
+/// A contact state of a graph, as a record.
+void PushNode(lua_State* L, const ContactNode& node);
 void PushNeighbours(lua_State* L, const NeighbourFacts& facts);
 void PushCost(lua_State* L, const CostFacts& cost);
 
@@ -279,6 +281,7 @@ const std::vector<FunctionInfo>& TimelineFunctions();
 Pushed PushIpairs(lua_State* L);
 
 std::vector<const Schema*> GraphSchemas();
+std::vector<const Schema*> PathSchemas();
 std::vector<const Schema*> TrajectorySchemas();
 std::vector<const Schema*> GraspStageSchemas();
 std::vector<const Schema*> MotionSchemas();

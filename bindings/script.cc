@@ -132,9 +132,9 @@ Api MakeApi() {
   api.schemas = {&kOpenOptions};
   for (const auto& schemas :
        {SceneSchemas(), SessionSchemas(), SimulationSchemas(), GeometrySchemas(), GraspSchemas(),
-        StageOptionSchemas(), GraphSchemas(), TrajectorySchemas(), GraspStageSchemas(),
-        MotionSchemas(), EventSchemas(), ReasonSchemas(), RolloutSchemas(), TimelineSchemas(),
-        RunSchemas(), WhatIfSchemas(), PlanSchemas(), StudySchemas()}) {
+        StageOptionSchemas(), GraphSchemas(), PathSchemas(), TrajectorySchemas(),
+        GraspStageSchemas(), MotionSchemas(), EventSchemas(), ReasonSchemas(), RolloutSchemas(),
+        TimelineSchemas(), RunSchemas(), WhatIfSchemas(), PlanSchemas(), StudySchemas()}) {
     api.schemas.insert(api.schemas.end(), schemas.begin(), schemas.end());
   }
   return api;
