@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "app/core/error.h"
+#include "app/core/file_kind.h"
 
 namespace pregrasp {
 namespace {
@@ -23,11 +24,8 @@ bool IsBelow(const fs::path& path, const fs::path& folder) {
 }
 
 void RequirePlainFile(const fs::path& file, const std::string& name) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) throw InputError(name, "", "a file", "nothing of that name");
-  if (fs::is_directory(status)) throw InputError(name, "", "a file", "a folder");
-  if (!fs::is_regular_file(status)) throw InputError(name, "", "a plain file", "a device or pipe");
+  const std::string other = DescribeNonFile(file);
+  if (!other.empty()) throw InputError(name, "", "a file", other);
 }
 
 }  // namespace

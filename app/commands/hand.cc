@@ -122,12 +122,7 @@ void PrintFinger(const HandModel& hand, const HandMeasures& measures, int f) {
 }
 
 int CheckHand(const HandOptions& options) {
-  fs::path file = options.hand;
-  if (!IsHandFile(options.hand)) {
-    const auto hands = ListHands();
-    const auto found = hands.find(options.hand);
-    if (found != hands.end()) file = found->second;
-  }
+  const fs::path file = FileOfHand(options.hand);
   HandReading reading = ReadHand(file);
   if (reading.faults.empty()) {
     try {

@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/core/file_kind.h"
 #include "app/geometry/read_in_child.h"
 #include "app/geometry/read_ply.h"
 #include "app/geometry/read_text_mesh.h"
@@ -36,10 +37,9 @@ std::string Extension(const fs::path& file) {
 }
 
 void RequireReadable(const fs::path& file) {
+  const std::string clause = NonFileClause(file);
+  if (!clause.empty()) throw UnreadableFile("a file", clause);
   std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) throw UnreadableFile("a file", "which does not exist");
-  if (!fs::is_regular_file(status)) throw UnreadableFile("a file", "which is not a regular file");
   const std::uintmax_t bytes = fs::file_size(file, error);
   if (error) throw UnreadableFile("a readable file", "which cannot be read");
   if (bytes == 0) throw UnreadableFile("a file with a shape in it", "which is empty");

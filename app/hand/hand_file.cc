@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/core/file_kind.h"
 #include "app/core/json_text.h"
 #include "app/core/lua_api.h"
 #include "app/core/number_range.h"
@@ -117,11 +118,8 @@ class Converter {
 };
 
 std::string ReadSource(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) {
-    throw InputError(file.string(), "", "a hand.lua",
-                     fs::exists(file, ignored) ? "no file" : "nothing there");
-  }
+  const std::string other = DescribeNonFile(file);
+  if (!other.empty()) throw InputError(file.string(), "", "a hand.lua", other);
   std::ifstream in(file, std::ios::binary);
   std::string text(kMaxSource + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -63,4 +63,8 @@ HandReading ReadHand(const std::filesystem::path& file);
 /// The files of hands by their names, the folders below assets/hands.
 std::map<std::string, std::filesystem::path> ListHands();
 
+/// The file of a hand by its name, or the path that names one already (IsHandFile).
+/// @throws InputError about "hand" for a name that none has, with the nearest.
+std::filesystem::path FileOfHand(const std::string& name_or_file);
+
 }  // namespace pregrasp

@@ -18,20 +18,6 @@ namespace fs = std::filesystem;
 
 fs::path HandsFolder() { return DataFolder() / "assets" / "hands"; }
 
-fs::path FileOfHand(const std::string& name_or_file) {
-  if (IsHandFile(name_or_file)) return name_or_file;
-  const std::map<std::string, fs::path> hands = ListHands();
-  if (const auto found = hands.find(name_or_file); found != hands.end()) return found->second;
-  std::vector<std::string> names;
-  std::string listed;
-  for (const auto& [name, file] : hands) {
-    names.push_back(name);
-    listed += (listed.empty() ? "" : ", ") + name;
-  }
-  throw InputError("", "hand", "the name of a hand (" + listed + ") or a hand.lua",
-                   '"' + name_or_file + '"' + FormatHint(FindNearest(name_or_file, names)));
-}
-
 }  // namespace
 
 bool IsHandFile(const std::string& name_or_file) {
@@ -60,6 +46,20 @@ std::map<std::string, fs::path> ListHands() {
     if (fs::exists(file, ignored)) hands[entry.path().filename().string()] = file;
   }
   return hands;
+}
+
+fs::path FileOfHand(const std::string& name_or_file) {
+  if (IsHandFile(name_or_file)) return name_or_file;
+  const std::map<std::string, fs::path> hands = ListHands();
+  if (const auto found = hands.find(name_or_file); found != hands.end()) return found->second;
+  std::vector<std::string> names;
+  std::string listed;
+  for (const auto& [name, file] : hands) {
+    names.push_back(name);
+    listed += (listed.empty() ? "" : ", ") + name;
+  }
+  throw InputError("", "hand", "the name of a hand (" + listed + ") or a hand.lua",
+                   '"' + name_or_file + '"' + FormatHint(FindNearest(name_or_file, names)));
 }
 
 const HandModel& FindHand(const std::string& name_or_file) {

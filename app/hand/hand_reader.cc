@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/core/data_folder.h"
+#include "app/core/file_kind.h"
 #include "app/core/sha256.h"
 #include "app/core/text.h"
 #include "app/hand/distance.h"
@@ -28,9 +29,8 @@ constexpr double kTipFar = 2e-3;        // [m], of what it may be off it
 fs::path FindFile(const fs::path& file, const fs::path& description, const std::string& what) {
   std::error_code error;
   const fs::path found = fs::canonical(file, error);
-  if (error || !fs::is_regular_file(found, error)) {
-    throw InputError(description.string(), what, "a file",
-                     '"' + file.string() + "\", which does not exist");
+  if (const std::string clause = NonFileClause(file); !clause.empty()) {
+    throw InputError(description.string(), what, "a file", '"' + file.string() + "\", " + clause);
   }
   for (const fs::path& folder :
        {fs::absolute(description).parent_path(), DataFolder() / "assets" / "hands"}) {

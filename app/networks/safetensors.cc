@@ -13,6 +13,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/file_kind.h"
 
 namespace pregrasp {
 namespace {
@@ -291,10 +292,10 @@ std::string SerializeTensors(const TensorFile& file) {
 }
 
 TensorFile ReadTensors(const std::filesystem::path& path) {
+  const std::string expected = "a readable safetensors file", other = DescribeNonFile(path);
+  if (!other.empty()) throw InputError(path.string(), "", expected, other);
   std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in || !std::filesystem::is_regular_file(path)) {
-    throw InputError(path.string(), "", "a readable safetensors file", "none");
-  }
+  if (!in) throw InputError(path.string(), "", expected, "one that cannot be read");
   const auto size = static_cast<std::streamoff>(in.tellg());
   std::string bytes(static_cast<std::size_t>(size), '\0');
   in.seekg(0);

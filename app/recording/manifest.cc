@@ -5,6 +5,7 @@
 
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/file_kind.h"
 #include "app/core/json_text.h"
 #include "app/core/sha256.h"
 #include "app/recording/checked_file.h"
@@ -16,6 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr char kName[] = "manifest.json";
 constexpr char kRunSchema[] = "pregrasp.run/1";
+constexpr const char* kFinishedRun = "a finished run";
 constexpr std::size_t kHexDigits = 64;
 
 // How manifest.json lists itself, up to the digest. `files` is its last field and no other file has
@@ -48,6 +50,13 @@ bool ProvesItself(std::string text, const std::string& hash) {
   if (hash.size() != kHexDigits || entry == std::string::npos) return false;
   text.erase(entry + sizeof kOwnEntry - 1, kHexDigits);
   return Sha256(text) == hash;
+}
+
+void RequireFolder(const fs::path& directory) {
+  std::error_code error;
+  if (fs::is_directory(directory, error)) return;
+  const std::string other = DescribeNonFile(directory);
+  throw InputError(directory.string(), "", kFinishedRun, other.empty() ? "a file" : other);
 }
 
 // @throws InputError if the text is a whole manifest of a run, of another schema.
@@ -117,10 +126,8 @@ bool IsFinishedRun(const fs::path& directory) {
 
 void RequireFinishedRun(const fs::path& directory) {
   if (IsFinishedRun(directory)) return;
-  std::error_code error;
-  throw InputError(
-      directory.string(), "", "a finished run",
-      fs::exists(directory, error) ? "one without a whole manifest.json" : "nothing there");
+  RequireFolder(directory);
+  throw InputError(directory.string(), "", kFinishedRun, "a folder without a whole manifest.json");
 }
 
 std::optional<std::string> FindExtraFile(const fs::path& directory) {
@@ -134,9 +141,10 @@ std::optional<std::string> FindExtraFile(const fs::path& directory) {
 
 std::optional<ManifestMismatch> VerifyManifest(const fs::path& directory) {
   using Reason = ManifestMismatch::Reason;
+  RequireFolder(directory);
   std::error_code error;
   if (!fs::exists(directory / kName, error)) {
-    throw InputError(directory.string(), "", "a finished run", "a folder without manifest.json");
+    throw InputError(directory.string(), "", kFinishedRun, "a folder without manifest.json");
   }
   const std::string text = ReadFile(directory / kName);
   RequireSchema(text, directory);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 
 #include "app/core/rng.h"
 
@@ -18,6 +19,12 @@ TEST(FormatDoubleTest, ReadsBackAsTheSameBits) {
 }
 
 TEST(FormatDoubleTest, IsTheShortestText) { EXPECT_EQ(FormatDouble(0.1), "0.1"); }
+
+TEST(FormatDoubleTest, NanHasNoSign) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(FormatDouble(nan), "nan");
+  EXPECT_EQ(FormatDouble(-nan), "nan");
+}
 
 TEST(OneLineTest, HasNoControlCharactersAndCutsBetweenCharacters) {
   EXPECT_EQ(OneLine("a\nb\t\x1b[31mc"), "a b  [31mc");

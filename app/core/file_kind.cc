@@ -1,0 +1,41 @@
+#include "app/core/file_kind.h"
+
+#include <system_error>
+
+namespace pregrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNoSuchFile = "nothing of that name";
+
+}  // namespace
+
+std::string DescribeNonFile(const fs::path& path) {
+  std::error_code error;
+  switch (fs::status(path, error).type()) {
+    case fs::file_type::regular:
+      return "";
+    case fs::file_type::not_found:
+      return kNoSuchFile;
+    case fs::file_type::directory:
+      return "a folder";
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    case fs::file_type::block:
+    case fs::file_type::character:
+      return "a device";
+    default:  // such as a folder on the way that may not be searched, a loop of links
+      return "one that cannot be reached (" + error.message() + ")";
+  }
+}
+
+std::string NonFileClause(const fs::path& path) {
+  const std::string what = DescribeNonFile(path);
+  if (what.empty()) return what;
+  return what == kNoSuchFile ? "which does not exist" : "which is " + what;
+}
+
+}  // namespace pregrasp
