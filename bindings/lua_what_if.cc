@@ -1,4 +1,5 @@
 #include "bindings/lua_planner.h"
+#include "bindings/scene_file.h"
 
 namespace pregrasp {
 namespace {
@@ -12,6 +13,7 @@ std::shared_ptr<Session> OpenChanged(lua_State* L, Session& session, const WhatI
   std::vector<bool> movable;
   for (const Body& body : scene.bodies) movable.push_back(body.movable());
   SessionConfig config = session.config();
+  const std::string hand = scene.hand, hand_where = WhereHandIsNamed(scene, settings);
   ApplySceneSettings(scene, settings);
   ApplyPlannerSettings(config.planner, settings);
   RequireNoSettingsLeft(settings, PlannerRoots());
@@ -20,6 +22,7 @@ std::shared_ptr<Session> OpenChanged(lua_State* L, Session& session, const WhatI
     throw InputError("", "set", "a mass for bodies that move", "one for " + scene.bodies[i].name);
   }
   ValidateScene(scene);
+  if (scene.hand != hand) FindHandOf(scene, Machine::Of(L).script_folder(), hand_where);
   constexpr int kSessionKib = 2000;
   CountMemory(L, kSessionKib);
   MemoryClaim claim = ClaimMemory(L, std::size_t{kSessionKib} << 10U);

@@ -1,9 +1,7 @@
 #include "bindings/scene_argument.h"
 
-#include <algorithm>
 #include <filesystem>
 
-#include "app/core/data_folder.h"
 #include "app/core/text.h"
 #include "bindings/lua_scene.h"
 #include "bindings/machine.h"
@@ -21,18 +19,11 @@ fs::path FindScene(Machine& machine, const std::string& name) {
     return machine.files().FindForReading(name);
   } catch (const InputError& error) {
     if (error.got() != "nothing of that name") throw;
-    std::vector<std::string> stems;
-    for (const fs::path& folder : {fs::path("scenes"), DataFolder() / "scenes"}) {
-      std::error_code none;
-      for (const auto& entry : fs::directory_iterator(folder, none)) {
-        if (entry.path().extension() == ".lua") stems.push_back(entry.path().stem());
-      }
-    }
-    std::sort(stems.begin(), stems.end());
-    const std::string nearest = FindNearest(fs::path(name).stem().string(), stems);
+    const fs::path nearest = FindNearestScene(name);
     if (nearest.empty()) throw;
+    // By this name it may be read wherever the program runs.
     throw InputError(error.where(), error.field(), error.expected(),
-                     error.got() + FormatHint("scenes/" + nearest + ".lua"));
+                     error.got() + FormatHint("scenes/" + nearest.filename().string()));
   }
 }
 

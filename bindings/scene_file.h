@@ -22,4 +22,16 @@ Scene LoadSceneFile(const std::filesystem::path& file, std::vector<Setting>& set
 /// (the scene's folder first, then the working directory and the assets), validates and loads.
 void FinishScene(Scene& scene, const std::filesystem::path& folder, std::vector<Setting>& settings);
 
+/// The scene of the folders "scenes", the working directory's and the program's, whose name is
+/// nearest to that of a file which is not there; empty for none.
+std::filesystem::path FindNearestScene(const std::string& name);
+
+/// Gives the scene the hand that it names; that of a file lies below the folder, or where files may
+/// be read.
+/// @param where  that names it, for messages.
+/// @throws InputError.
+void FindHandOf(Scene& scene, const std::filesystem::path& folder, const std::string& where);
+/// What names the scene's hand once these settings are applied: the last that does, or its file.
+std::string WhereHandIsNamed(const Scene& scene, const std::vector<Setting>& settings);
+
 }  // namespace pregrasp

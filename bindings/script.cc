@@ -62,7 +62,7 @@ std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields) {
     } else {
       value = FormatDouble(LuaValue<double>::Read(L, -1, "set." + key));
     }
-    settings.push_back({key, value});
+    settings.push_back({key, value, "set"});
     lua_pop(L, 1);
   }
   lua_pop(L, 1);

@@ -208,7 +208,7 @@ void ApplyPlannerSettings(PlannerConfig& config, std::vector<Setting>& settings)
     try {
       SetPlannerField(config, setting.key, ParseValue(setting.value));
     } catch (const InputError& error) {
-      throw InputError("--set", error.field(), error.expected(), error.got());
+      throw InputError(setting.where, error.field(), error.expected(), error.got());
     }
   }
   settings = left;

@@ -72,7 +72,7 @@ void SetPlannerField(PlannerConfig& config, const std::string& name, const Field
 void ApplySettings(const nlohmann::json& settings, PlannerConfig& config);
 
 /// Applies the settings that name a planner's field, and takes them out of the list.
-/// @throws InputError("--set") as above, but leaves names of other roots alone.
+/// @throws InputError(setting.where) as above, but leaves names of other roots alone.
 void ApplyPlannerSettings(PlannerConfig& config, std::vector<Setting>& settings);
 
 /// @throws InputError for the first field that is out of its range: whoever filled in `config`.

@@ -12,15 +12,13 @@
 namespace pregrasp {
 namespace {
 
-constexpr const char* kWhere = "--set";
-
 double ParseNumber(const Setting& setting, std::string_view text, const NumberRange& range) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
-    throw InputError(kWhere, setting.key, range.Expected(), '"' + std::string(text) + '"');
+    throw InputError(setting.where, setting.key, range.Expected(), '"' + std::string(text) + '"');
   }
-  RequireWithin(kWhere, setting.key, range, value);
+  RequireWithin(setting.where, setting.key, range, value);
   return value;
 }
 
@@ -34,7 +32,8 @@ Vector3 ParseVector(const Setting& setting, const NumberRange& range) {
   for (int i = 0; i < 3; ++i) {
     const std::size_t comma = text.find(',');
     if ((comma == std::string_view::npos) != (i == 2)) {
-      throw InputError(kWhere, setting.key, "three numbers x,y,z", '"' + setting.value + '"');
+      throw InputError(setting.where, setting.key, "three numbers x,y,z",
+                       '"' + setting.value + '"');
     }
     v[i] = ParseNumber(setting, text.substr(0, comma), range);
     text.remove_prefix(i == 2 ? text.size() : comma + 1);
@@ -101,6 +100,17 @@ Setters SettersOf(Scene& scene) {
   return setters;
 }
 
+// What messages of ValidateScene call what a setting changes.
+std::string FieldOf(const Scene& scene, const std::string& key) {
+  for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
+    const std::string prefix = "environment." + scene.bodies[i].name + '.';
+    if (key.starts_with(prefix)) {
+      return "environment[" + std::to_string(i) + "]." + key.substr(prefix.size());
+    }
+  }
+  return key;
+}
+
 std::string RootOf(const std::string& key) { return key.substr(0, key.find('.')); }
 
 }  // namespace
@@ -108,7 +118,7 @@ std::string RootOf(const std::string& key) { return key.substr(0, key.find('.'))
 Setting ParseSetting(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size()) {
-    throw InputError(kWhere, "", "key=value, as in fingertips.friction=0.5",
+    throw InputError(Setting{}.where, "", "key=value, as in fingertips.friction=0.5",
                      '"' + assignment + '"');
   }
   return {assignment.substr(0, equals), assignment.substr(equals + 1)};
@@ -122,6 +132,10 @@ void ApplySceneSettings(Scene& scene, std::vector<Setting>& settings) {
     roots.push_back(RootOf(key));
   }
   std::vector<Setting> left;
+  std::map<std::string, const Setting*> taken;  // by field; what they say may rename bodies
+  for (const Setting& setting : settings) {
+    if (setters.contains(setting.key)) taken[FieldOf(scene, setting.key)] = &setting;
+  }
   for (const Setting& setting : settings) {
     if (const auto setter = setters.find(setting.key); setter != setters.end()) {
       setter->second(setting);
@@ -131,15 +145,23 @@ void ApplySceneSettings(Scene& scene, std::vector<Setting>& settings) {
       RequireNoSettingsLeft({setting}, legal);
     }
   }
+  try {
+    if (!taken.empty()) ValidateScene(scene);
+  } catch (const InputError& error) {
+    const auto found = taken.find(error.field());
+    if (found == taken.end()) throw;
+    const Setting& setting = *found->second;
+    throw InputError(setting.where, setting.key, error.expected(), error.got());
+  }
   settings = std::move(left);
 }
 
 void RequireNoSettingsLeft(const std::vector<Setting>& settings,
                            const std::vector<std::string>& known) {
   if (settings.empty()) return;
-  const std::string& key = settings.front().key;
+  const auto& [key, value, where] = settings.front();
   const std::string nearest = FindNearest(key, known);
-  throw InputError(kWhere, "",
+  throw InputError(where, "",
                    nearest.empty()
                        ? "a key that can be set, as object.mass or mppi.sigma (pregrasp info "
                          "--settings lists the planner's)"

@@ -55,15 +55,24 @@ TEST(HandCommandTest, SaysEachFaultInALineAndDrawsNothing) {
   EXPECT_THAT(broken.err, HasSubstr("allegro.urdf: palm_link.collision: expected cylinders and "
                                     "spheres, got a box: say capsules = "));
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
-  EXPECT_THAT(RunProgram({"hand", "check", "for_finger"}, folder.path()).err,
-              HasSubstr("for_finger: expected a hand.lua"));
+  const std::string expected =
+      "hand: expected the name of a hand (four_finger, shadow_left, shadow_right) or a hand.lua, "
+      "got \"for_finger\" (did you mean \"four_finger\"?)\n";
+  const ProgramResult mistyped = RunProgram({"hand", "check", "for_finger"}, folder.path());
+  EXPECT_EQ(mistyped.code, 2);
+  EXPECT_EQ(mistyped.err, expected);
+  EXPECT_EQ(RunProgram({"hand", "check", "own"}, folder.path()).code, 2);
+  EXPECT_EQ(RunProgram({"hand", "check", "./own"}, folder.path()).err,
+            "./own: expected a hand.lua, got a folder\n");
   const ProgramResult run =
       RunProgram({"run", (kSource / "scenes" / "ruler.lua").string(), "--set", "hand=for_finger"},
                  folder.path());
   EXPECT_EQ(run.code, 2);
-  EXPECT_THAT(run.err, HasSubstr("hand: expected the name of a hand (four_finger, shadow_left, "
-                                 "shadow_right) or a hand.lua, got \"for_finger\" (did you mean "
-                                 "\"four_finger\"?)"));
+  EXPECT_EQ(run.err, "--set: " + expected);
+  const ProgramResult pipe =
+      RunProgram({"run", (kSource / "scenes" / "ruler.lua").string(), "--set", "hand=/dev/null"},
+                 folder.path());
+  EXPECT_EQ(pipe.err, "--set: hand \"/dev/null\": expected a file, got a device\n");
 }
 
 TEST(HandCommandTest, AThumbThatMeetsNoFingerIsAFault) {

@@ -78,6 +78,34 @@ TEST(SettingsTest, WhatIsWrongIsSaidWithTheNearestKey) {
   }
 }
 
+TEST(SettingsTest, WhatDoesNotFitTheSceneIsRefusedByTheKeyThatWasTyped) {
+  EXPECT_EQ(Failure("name=a b"),
+            "--set: name: expected a name of letters, digits, _ and -, got \"a b\"");
+  EXPECT_EQ(Failure("environment.table.name=object"),
+            "--set: environment.table.name: expected a name no other body has, got \"object\"");
+  Scene scene = MakeObjectOnTable();
+  std::vector<Setting> settings = {{"environment.table.name", "", "set"}};
+  try {
+    ApplySceneSettings(scene, settings);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "set: environment.table.name: expected a name of letters, digits, _ and -, got "
+                 "\"\"");
+  }
+  // What is the scene's own fault stays so.
+  scene = MakeObjectOnTable();
+  scene.object().where = "scene.lua:3";
+  scene.object().friction = -1.0;
+  settings = {ParseSetting("environment.table.name=board")};
+  try {
+    ApplySceneSettings(scene, settings);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where(), "scene.lua:3");
+  }
+}
+
 // Every number that --set reaches, with one that is just beyond each end of what it may be.
 TEST(SettingsTest, WhatIsNotFiniteOrOutOfRangeIsRefusedByTheKeyThatWasTyped) {
   const struct {
