@@ -93,7 +93,7 @@ int Run(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return Fail(kBadInput, std::string("pregrasp: ") + error.what() + " (see pregrasp --help)");
+    return Fail(kBadInput, DescribeParseError(app, error));
   }
   if (!action) {
     std::fputs(app.help().c_str(), stdout);

@@ -15,6 +15,7 @@
 #include "app/commands/progress.h"
 #include "app/core/data_folder.h"
 #include "app/core/error.h"
+#include "app/core/text.h"
 #include "app/job/planner_settings.h"
 #include "app/studies/eval.h"
 #include "app/studies/report.h"
@@ -71,8 +72,10 @@ std::vector<fs::path> FindFiles(const std::string& list, const fs::path& folder)
     const bool name = fs::path(word).filename() == word && fs::path(word).extension() != ".lua";
     files.push_back(name ? Shorten(folder / (word + ".lua")) : fs::path(word));
     if (word.empty() || !fs::is_regular_file(files.back())) {
+      std::vector<std::string> names;
+      for (const fs::path& file : FindFiles("all", folder)) names.push_back(file.stem().string());
       throw InputError("--scenes", "", fmt::format("all, names of {} or files", folder.string()),
-                       '"' + word + '"');
+                       '"' + word + '"' + FormatHint(FindNearest(word, names)));
     }
   }
   if (files.empty()) throw InputError("--scenes", "", "all, or a list with commas", "nothing");

@@ -22,6 +22,7 @@
 #include "app/commands/commands.h"
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/text.h"
 #include "app/studies/study.h"
 
 namespace pregrasp {
@@ -107,10 +108,15 @@ JobPlan ResolveStudy(const JobsOptions& options) {
   } else if (words[0] == "eval") {
     plan.merge = {plan.program, "eval", "merge"};
   } else {
+    std::vector<std::string> names = {"eval", "train"};
+    for (const StudyInfo& info : studies) names.push_back(info.name);
+    for (const std::string& name : sets) names.push_back("dataset " + name);
+    const bool two = words[0] == "dataset" && words.size() > 1;
+    const std::string got = two ? words[0] + ' ' + words[1] : words[0];
     throw InputError(
         "STUDY", "",
         "the name of a study, or eval, dataset grasps, dataset labels, dataset states or train",
-        words[0]);
+        '"' + got + '"' + FormatHint(FindNearest(got, names)));
   }
   for (const std::string& word : words) {
     for (const char* option : {"--shard", "--out", "--threads", "--dry-run"}) {
@@ -297,9 +303,10 @@ void AddEngine(const Subcommand& jobs, const std::string& engine, const std::str
            "A study's name, or a command: eval, dataset grasps, dataset labels, dataset states, "
            "train (with --seeds)")
       .Required();
-  command.Add("WORDS", options->words,
-              "More words of it; its options after --: jobs slurm --tasks 8 --out out/jobs -- eval "
-              "--seeds 5");
+  command.Add("WORDS", options->words, "More words of it");
+  command.AddRest("ITS_OPTIONS", "After --: options of it, or all of it");
+  command.AddNote("options of the study follow --, as in: pregrasp jobs " + engine +
+                  " --tasks 8 --out out/jobs -- eval --seeds 5");
   command.Add("--tasks", options->tasks, "Tasks to cut it into").Within({1, 1e6, 1}).Required();
   command.Add("--out", options->out, "Folder of the job files, items, logs and result").Required();
   command.Add("--cpus", options->cpus, "Threads of each task").Within({1, 256, 1}).ShowDefault();

@@ -172,7 +172,24 @@ int ShowFilm(const ShowOptions& options) {
   return 0;
 }
 
-int Show(const ShowOptions& options) {
+// What --steps lists, which is one word with commas each time that it is given.
+std::vector<std::string> SplitSteps(const std::vector<std::string>& lists) {
+  std::vector<std::string> ids;
+  for (const std::string& list : lists) {
+    std::istringstream in(list + ',');
+    for (std::string id; std::getline(in, id, ',');) {
+      if (id.empty()) {
+        throw InputError("--steps", "", "the ids of steps with a comma between two",
+                         '"' + list + '"');
+      }
+      ids.push_back(id);
+    }
+  }
+  return ids;
+}
+
+int Show(ShowOptions options) {
+  options.steps = SplitSteps(options.steps);
   const std::filesystem::path out = options.out;
   RequireOutsideRuns(out);
   if (IsFinishedRun(options.run)) {
@@ -221,7 +238,7 @@ void AddShow(const Subcommand& app, Action& action) {
   command
       .Add("--steps", options->steps,
            "Of a strip: the steps' ids with commas, all by one camera, before,after or more")
-      .CommaSeparated();
+      .OneAtATime();
   command.Add("--what", options->what,
               "Of a drawing: costs, of the iterations along each path; graph, the contact states "
               "that are kept");

@@ -1,12 +1,16 @@
 #include "app/commands/subcommand.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
+
+#include "app/core/error.h"
+#include "app/core/text.h"
 
 namespace pregrasp {
 namespace {
@@ -20,6 +24,10 @@ template <>
 struct IsText<std::optional<std::string>> : std::true_type {};
 template <>
 struct IsText<std::filesystem::path> : std::true_type {};
+template <>
+struct IsText<std::vector<std::string>> : std::true_type {};
+template <>
+struct IsText<std::vector<std::filesystem::path>> : std::true_type {};
 
 CLI::Validator NoFlag() {
   return {[](const std::string& text) {
@@ -30,7 +38,96 @@ CLI::Validator NoFlag() {
           ""};
 }
 
+std::string Quote(const std::string& text) { return '"' + text + '"'; }
+
+// The commands and the options of a command, as they are typed.
+std::vector<std::string> CommandsOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+// "a command (merge, report)"
+std::string ListCommands(const CLI::App& app) {
+  const std::vector<std::string> commands = CommandsOf(app);
+  std::string list;
+  for (const std::string& each : commands) list += (list.empty() ? "" : ", ") + each;
+  return commands.size() == 1 ? "the command " + list : "a command (" + list + ")";
+}
+
+std::vector<std::string> OptionsOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+// What the command was given and does not have.
+InputError RefuseWord(const CLI::App& app, const std::string& name, const std::string& note,
+                      const std::string& word) {
+  const std::vector<std::string> commands = CommandsOf(app);
+  std::string expected, nearest;
+  if (word.rfind('-', 0) == 0) {
+    expected = "an option that it has";
+    nearest = FindNearest(word, OptionsOf(app));
+  } else if (!commands.empty()) {
+    expected = ListCommands(app);
+    nearest = FindNearest(word, commands);
+  } else {
+    expected = "no more arguments";
+  }
+  if (!note.empty()) return {name, "", expected, Quote(word) + ": " + note};
+  return {name, "", expected, Quote(word) + FormatHint(nearest)};
+}
+
+// What is wrong with an option's number of values.
+InputError RefuseCount(const CLI::App& app, const std::string& name, const std::string& option) {
+  const std::vector<const CLI::Option*> options = app.get_options();
+  const auto found = std::find_if(options.begin(), options.end(), [&](const CLI::Option* each) {
+    return each->get_name() == option;
+  });
+  const std::size_t count = found == options.end() ? 0 : (*found)->count();
+  if (count < 2) return {name, option, "a value", "nothing"};
+  return {name, option, "it once", std::to_string(count) + " times"};
+}
+
 }  // namespace
+
+std::string DescribeParseError(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* command = &app;
+  std::string name = app.get_name();
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    name += ' ' + command->get_name();
+  }
+  const std::string help = " (see " + name + " --help)";
+  const std::vector<std::string> left = command->remaining();
+  const auto option = std::find_if(left.begin(), left.end(), [](const std::string& word) {
+    return word.size() > 1 && word[0] == '-' && word != "--";
+  });
+  // A command has the program's closing words unless it has its own.
+  const std::string footer = command->get_footer();
+  const std::string note = footer == app.get_footer() ? "" : footer;
+  const std::string text = error.what(), is_required = " is required";
+  if (option != left.end()) return RefuseWord(*command, name, note, *option).what() + help;
+  if (!left.empty()) return RefuseWord(*command, name, note, left.front()).what() + help;
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    return RefuseCount(*command, name, text.substr(0, text.find(": "))).what() + help;
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && text.ends_with(is_required)) {
+    const std::string what = text.substr(0, text.size() - is_required.size());
+    const bool one = what != "A subcommand";
+    return InputError(name, "", one ? what : ListCommands(*command), "nothing").what() + help;
+  }
+  // A flag's, as all other values are checked before.
+  const std::size_t begin = text.find(": "), equals = text.find(" = ");
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr && equals != text.npos) {
+    const std::string flag = text.substr(begin + 2, equals - begin - 2);
+    return InputError(name, flag, "no value", Quote(text.substr(equals + 3))).what() + help;
+  }
+  return name + ": " + text + help;
+}
 
 Option Option::Required() const { return Option(*option_->required()); }
 
@@ -51,25 +148,33 @@ Option Option::Within(const NumberRange& range) const {
 
 Option Option::OneAtATime() const { return Option(*option_->allow_extra_args(false)); }
 
-Option Option::CommaSeparated(int elements) const {
-  return Option(*option_->delimiter(',')->expected(elements));
-}
-
-Option Option::CommaSeparated() const {
-  return Option(*option_->delimiter(',')->allow_extra_args(false));
-}
-
 Subcommand Subcommand::AddCommand(const std::string& name, const std::string& text) const {
   return Subcommand(*app_->add_subcommand(name, text));
 }
+
+void Subcommand::AddNote(const std::string& text) const { app_->footer(text); }
 
 void Subcommand::RequireCommand() const { app_->require_subcommand(1); }
 
 template <typename Value>
 Option Subcommand::Add(const std::string& name, Value& value, const std::string& text) const {
   CLI::Option& option = *app_->add_option(name, value, text);
-  if constexpr (IsText<Value>::value) option.check(NoFlag());
+  // A list of words without a name may hold another command's options.
+  constexpr bool kList = requires {
+    value.push_back({});
+    value.front().size();
+  };
+  if constexpr (IsText<Value>::value) {
+    if (!kList || name.rfind('-', 0) == 0) option.check(NoFlag());
+  }
   return Option(option);
+}
+
+// Never gets a value, as the list before it takes all. But CLI11 ends a command at -- where none of
+// its arguments is without a value.
+void Subcommand::AddRest(const std::string& name, const std::string& text) const {
+  app_->add_option_function<std::string>(
+      name, [](const std::string&) {}, text);
 }
 
 Option Subcommand::AddFlag(const std::string& name, bool& value, const std::string& text) const {

@@ -9,6 +9,7 @@
 namespace CLI {
 class App;
 class Option;
+class ParseError;
 }  // namespace CLI
 
 namespace pregrasp {
@@ -25,10 +26,6 @@ class Option {
   Option Within(const NumberRange& range) const;
   /// A list takes one element each time that the option is given, else all that follow it.
   Option OneAtATime() const;
-  /// A list of so many elements, which may be one word with commas.
-  Option CommaSeparated(int elements) const;
-  /// A list of any length in one word with commas, each time that the option is given.
-  Option CommaSeparated() const;
 
  private:
   CLI::Option* option_;
@@ -41,6 +38,8 @@ class Subcommand {
   explicit Subcommand(CLI::App& app) : app_(&app) {}
 
   Subcommand AddCommand(const std::string& name, const std::string& text) const;
+  /// What the help ends with, and a message about an argument that the command does not have.
+  void AddNote(const std::string& text) const;
   /// One of the subcommands must be given.
   void RequireCommand() const;
 
@@ -48,6 +47,9 @@ class Subcommand {
   /// @tparam Value  one of those at the end of command.cc.
   template <typename Value>
   Option Add(const std::string& name, Value& value, const std::string& text) const;
+  /// The help says what follows --, and the command takes it as more of its list of words. (CLI11
+  /// alone would, only while that list is empty.)
+  void AddRest(const std::string& name, const std::string& text) const;
   Option AddFlag(const std::string& name, bool& value, const std::string& text) const;
   /// --seed, or another name, a whole number from 0. (CLI11 alone would take -1 for the largest of
   /// them.)
@@ -60,5 +62,9 @@ class Subcommand {
  private:
   CLI::App* app_;
 };
+
+/// One line about a command line that cannot be taken: the command, what was expected, what came.
+/// @param app  the program, which has parsed up to there.
+std::string DescribeParseError(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace pregrasp

@@ -1,6 +1,7 @@
 #include "app/studies/study.h"
 
 #include "app/core/error.h"
+#include "app/core/text.h"
 
 namespace pregrasp {
 
@@ -17,12 +18,14 @@ const std::vector<StudyInfo>& Studies() {
 }
 
 const StudyInfo& FindStudy(const std::string& name) {
-  std::string names;
+  std::vector<std::string> names;
+  std::string all;
   for (const StudyInfo& study : Studies()) {
     if (study.name == name) return study;
-    names += (names.empty() ? "" : ", ") + study.name;
+    names.push_back(study.name);
+    all += (all.empty() ? "" : ", ") + study.name;
   }
-  throw InputError("--study", "", names, '"' + name + '"');
+  throw InputError("--study", "", all, '"' + name + '"' + FormatHint(FindNearest(name, names)));
 }
 
 }  // namespace pregrasp

@@ -77,10 +77,29 @@ TEST(JobsCommandTest, ADryRunShowsWhatWouldRunAndWritesNothing) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST(JobsCommandTest, AStudysWordsMayStandBeforeTheDashesAndAfterThem) {
+  const TestFolder folder;
+  const auto commands = [&](const std::vector<std::string>& study) {
+    std::vector<std::string> words = {"jobs", "slurm", "--tasks", "2", "--out", "x", "--dry-run"};
+    words.insert(words.end(), study.begin(), study.end());
+    const ProgramResult result = RunProgram(words, folder.path());
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.out;
+  };
+  const std::string after = commands({"--", "dataset", "grasps", "--items", "4"});
+  EXPECT_NE(after.find("dataset grasps --items 4 --shard 1/2"), std::string::npos) << after;
+  EXPECT_EQ(commands({"dataset", "--", "grasps", "--items", "4"}), after);
+  EXPECT_EQ(commands({"dataset", "grasps", "--", "--items", "4"}), after);
+}
+
 TEST(JobsCommandTest, BadInputIsOneLineAndLeavesNothing) {
   const TestFolder folder;
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{"nothing", "--tasks", "2", "--out", "x"}, "STUDY: expected the name of a study"},
+      {{"dataset", "graps", "--tasks", "2", "--out", "x"},
+       "got \"dataset graps\" (did you mean \"dataset grasps\"?)"},
+      {{"dataset", "grasps", "--tasks", "2", "--out", "x", "--items", "4"},
+       "got \"--items\": options of the study follow --, as in: pregrasp jobs slurm "},
       {{"ik-order", "--out", "x"}, "--tasks"},
       {{"ik-order", "--tasks", "0", "--out", "x"}, "--tasks"},
       {{"ik-order", "--tasks", "4", "--out", "x"}, "--tasks: expected 1 to 3, the number of items"},

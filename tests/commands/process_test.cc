@@ -88,9 +88,9 @@ TEST(ProcessTest, AnOptionWithoutItsValueTakesNoOther) {
       {{"run", "--out=", "scenes/ruler.lua"},
        "pregrasp: --out: expected a value after =, got none\n"},
       {{"run", "scenes/ruler.lua", "--out", "--all"},
-       "pregrasp: --out: expected a value, got the option --all (see pregrasp --help)\n"},
+       "pregrasp run: --out: expected a value, got the option --all (see pregrasp run --help)\n"},
       {{"run", "scenes/ruler.lua", "--out", ""},
-       "pregrasp: --out: expected a value, got an empty one (see pregrasp --help)\n"},
+       "pregrasp run: --out: expected a value, got an empty one (see pregrasp run --help)\n"},
   };
   for (const auto& [arguments, expected] : cases) {
     const ProgramResult result = RunProgram(arguments, folder.path());
@@ -101,6 +101,46 @@ TEST(ProcessTest, AnOptionWithoutItsValueTakesNoOther) {
   // A script's own arguments are its own.
   folder.Write("args.lua", "print(...)\n");
   EXPECT_EQ(RunProgram({"script", "args.lua", "x="}, folder.path()).out, "x=\n");
+}
+
+TEST(ProcessTest, WhatTheCommandLineDoesNotHaveIsNamedWithTheNearest) {
+  const TestFolder folder;
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{"rnu", "scenes/ruler.lua"}, "pregrasp: expected a command (check, "},
+      {{"rnu", "scenes/ruler.lua"}, "got \"rnu\" (did you mean \"run\"?) (see pregrasp --help)"},
+      {{"run", "x.lua", "--sed", "3"},
+       "pregrasp run: expected an option that it has, got \"--sed\" (did you mean \"--seed\"?) "
+       "(see "
+       "pregrasp run --help)"},
+      {{"run", "--sed", "3"}, "pregrasp run: expected an option that it has, got \"--sed\""},
+      {{"run", "a.lua", "b.lua"}, "pregrasp run: expected no more arguments, got \"b.lua\""},
+      {{"run"}, "pregrasp run: expected SCENE, got nothing"},
+      {{"run", "a.lua", "--seed"}, "pregrasp run: --seed: expected a value, got nothing"},
+      {{"run", "a.lua", "--seed", "1", "--seed", "2"},
+       "pregrasp run: --seed: expected it once, got 2 times"},
+      {{"run", "a.lua", "--all=maybe"}, "pregrasp run: --all: expected no value, got \"maybe\""},
+      {{"run", "a.lua", "--set", "--all"},
+       "pregrasp run: --set: expected a value, got the option --all"},
+      {{"hand"}, "pregrasp hand: expected the command check, got nothing"},
+      {{"dataset", "graps"}, "got \"graps\" (did you mean \"grasps\"?)"},
+      {{"eval", "reprt", "out"},
+       "pregrasp eval: expected a command (merge, report), got \"reprt\""},
+      {{"eval", "--study", "lader", "--out", "x"}, "got \"lader\" (did you mean \"ladder\"?)"},
+      {{"eval", "--scenes", "rulr", "--out", "x"}, "got \"rulr\" (did you mean \"ruler\"?)"},
+      {{"run", "rulr.lua"}, "rulr.lua: expected a file, got nothing of that name (did you mean \""},
+      {{"show", "run", "--steps", "a,,b", "--out", "x.png"},
+       "--steps: expected the ids of steps with a comma between two, got \"a,,b\""},
+      {{"show", "/dev/null", "--out", "x.png"}, "/dev/null: expected a finished run, got a device"},
+      {{"verify", "nowhere"}, "nowhere: expected a finished run, got nothing of that name"},
+  };
+  for (const auto& [arguments, expected] : cases) {
+    const ProgramResult result = RunProgram(arguments, folder.path());
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_NE(result.err.find(expected), std::string::npos) << expected << "\n" << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(ListFiles(folder.path()).size(), 0U);
+  }
 }
 
 TEST(ProcessTest, AnUnknownDriverOfPicturesIsBadInput) {
