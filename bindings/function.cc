@@ -18,7 +18,7 @@ std::string ParameterName(const FunctionInfo& function, int number) {
 
 void ThrowNoSelf(lua_State* L, int index, const FunctionInfo& function,
                  const std::string& class_name) {
-  throw InputError("", "", "a " + class_name + " before a colon (x:" + function.name + ")",
+  throw InputError("", "", WithArticle(class_name) + " before a colon (x:" + function.name + ")",
                    DescribeValue(L, index));
 }
 

@@ -66,7 +66,7 @@ struct LuaValue<std::shared_ptr<T>> {
   static std::shared_ptr<T> Read(lua_State* L, int index, const std::string& path) {
     std::shared_ptr<T> object = FindObject<T>(L, index);
     if (!object)
-      throw InputError("", path, "a " + LuaClass<T>::info().name, DescribeValue(L, index));
+      throw InputError("", path, WithArticle(LuaClass<T>::info().name), DescribeValue(L, index));
     return object;
   }
   static void Push(lua_State* L, std::shared_ptr<T> object) { PushObject(L, std::move(object)); }
@@ -122,7 +122,7 @@ struct Parameter<T&> {
     if (!object) {
       const std::string name = LuaClass<std::remove_const_t<T>>::info().name;
       if (index < first) ThrowNoSelf(L, index, function, name);
-      throw InputError("", ParameterName(function, index - first + 1), "a " + name,
+      throw InputError("", ParameterName(function, index - first + 1), WithArticle(name),
                        DescribeValue(L, index));
     }
     ++index;

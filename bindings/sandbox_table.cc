@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bindings/lua_array.h"
 #include "bindings/protect.h"
 #include "bindings/sandbox.h"
 
@@ -151,6 +152,10 @@ int Move(lua_State* L) {
 }
 
 int Concat(lua_State* L) {
+  if (FindArray(L, 1)) {
+    PushList(L, 1);
+    lua_replace(L, 1);
+  }
   luaL_checktype(L, 1, LUA_TTABLE);
   const lua_Integer last =
       lua_isnoneornil(L, 4) ? HonestLength(L, "concat") : luaL_checkinteger(L, 4);

@@ -9,6 +9,7 @@
 #include "app/core/text.h"
 #include "app/job/planner_settings.h"
 #include "app/recording/build_info.h"
+#include "bindings/lua_array.h"
 #include "bindings/lua_grasp.h"
 #include "bindings/lua_planner.h"
 #include "bindings/lua_run.h"
@@ -52,7 +53,7 @@ std::vector<Setting> ReadSettings(lua_State* L, const Fields& fields) {
   while (lua_next(L, -2) != 0) {
     const std::string key = KeyText(L, -2);
     std::string value;
-    if (lua_istable(L, -1)) {
+    if (lua_istable(L, -1) || FindArray(L, -1)) {
       const Vector3 v = LuaValue<Vector3>::Read(L, -1, "set." + key);
       value = fmt::format("{},{},{}", v.x(), v.y(), v.z());
     } else if (lua_type(L, -1) == LUA_TSTRING) {

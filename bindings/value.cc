@@ -26,6 +26,11 @@ std::string WithVisibleNul(std::string text) {
 
 }  // namespace
 
+std::string WithArticle(const std::string& name) {
+  const bool vowel = std::strchr("AEIOaeio", name.empty() ? 'x' : name[0]) != nullptr;
+  return (vowel ? "an " : "a ") + name;
+}
+
 std::string DescribeValue(lua_State* L, int index) {
   switch (lua_type(L, index)) {
     case LUA_TNONE:
@@ -47,7 +52,7 @@ std::string DescribeValue(lua_State* L, int index) {
       if (luaL_getmetafield(L, index, "__name") == LUA_TSTRING) {
         std::string name = lua_tostring(L, -1);
         lua_pop(L, 1);
-        return "a " + name;
+        return WithArticle(name);
       }
       return std::string("a ") + luaL_typename(L, index);
     }
@@ -129,15 +134,16 @@ int CheckList(lua_State* L, int index, const std::string& path, const std::strin
 
 Vector3 LuaValue<Vector3>::Read(lua_State* L, int index, const std::string& path) {
   const std::string expected = "three numbers {x, y, z}";
+  index = PushList(L, index);
   const int count = CheckList(L, index, path, expected);
   if (count != 3) throw InputError("", path, expected, std::to_string(count) + " of them");
-  index = lua_absindex(L, index);
   Vector3 v;
   for (int i = 0; i < 3; ++i) {
     lua_rawgeti(L, index, i + 1);
     v[i] = LuaValue<double>::Read(L, -1, path + "[" + std::to_string(i + 1) + "]");
     lua_pop(L, 1);
   }
+  lua_pop(L, 1);
   return v;
 }
 

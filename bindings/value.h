@@ -16,6 +16,9 @@ namespace pregrasp {
 /// What a value is, for the "got" of a message: `-1`, `"left"`, `a table`, `nothing`.
 std::string DescribeValue(lua_State* L, int index);
 
+/// "a Path", "an Array".
+std::string WithArticle(const std::string& name);
+
 /// A table key as text.
 std::string KeyText(lua_State* L, int index);
 

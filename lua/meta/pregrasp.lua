@@ -387,7 +387,7 @@ function Session:shot(options) end
 ---@field font_scale? number 1: size of all type, 0.3 to 4
 ---@field file? string "out/NAME.png": drawn now, outside of the run directory
 
----Steps side by side, all by one camera, each with what it says: those of the list, before and after or more; the last one without.
+---Steps side by side, all by one camera, each with what it says: those of the list, before and after or more; the key steps so far without one, with `against` the last.
 ---@param options StripOptions
 function Session:strip(options) end
 
@@ -545,7 +545,7 @@ function Session:cloud(options) end
 ---@field normals Array|Vector3[] outward, unit length
 
 ---A big list that is not copied: a[1] to a[#a], nil beyond, ipairs(a) and pairs(a). It can only be read, and what a[i] gives
----is made anew each time. A call that takes a list takes it too.
+---is made anew each time: of a row of numbers another Array. A call that takes a list takes it too.
 ---@class Array
 ---@field count integer #a
 local Array = {}
