@@ -145,7 +145,7 @@ Pushed RunManifest(lua_State* L, LuaRun& run) {
   return {1};
 }
 void RunShot(lua_State* L, LuaRun& run, const std::string& id, const ShotOptions& options) {
-  if (!options.file) throw InputError("", "file", "where the picture goes", "nothing");
+  if (!options.file) throw InputError("", "file", kWhereTo, "nothing");
   const LoadedRun loaded = LoadRun(run.directory);
   const StepFacts& step = loaded.Get(id);
   options.shot.config.Validate();

@@ -9,6 +9,7 @@
 #include "app/geometry/contact_mesh.h"
 #include "app/job/check.h"
 #include "app/page/pair.h"
+#include "app/page/strip.h"
 #include "app/recording/partial_directory.h"
 #include "bindings/lua_planner.h"
 #include "bindings/lua_scene.h"
@@ -88,7 +89,9 @@ void ReadStrip(lua_State* L, const Fields& fields, Shot& shot, std::string& file
   shot.config.height = 1440;
   ReadPicture(L, fields, shot.config);
   shot.config.Validate();
-  file = fields.Required<std::string>("file");
+  const auto name = fields.Find<std::string>("file");
+  if (!name) fields.Refuse("file", kWhereTo);
+  file = *name;
 }
 
 ShotOptions LuaValue<ShotOptions>::Read(lua_State* L, int index, const std::string& /*path*/) {
@@ -327,7 +330,8 @@ void SessionShot(lua_State* L, Session& session, const ShotOptions& options) {
   TakeShot(L, session, session.timeline().last(), options);
 }
 
-// Steps side by side; with `against` what led to one of them beside what led to the other.
+// Steps side by side, the key ones where none are named; with `against` what led to one of them
+// beside what led to the other.
 void SessionStrip(lua_State* L, const std::shared_ptr<Session>& session,
                   const StripOptions& options) {
   const Timeline& timeline = session->timeline();
@@ -335,6 +339,7 @@ void SessionStrip(lua_State* L, const std::shared_ptr<Session>& session,
   for (const StripEntry& entry : options.entries) {
     places.push_back(entry.place ? *entry.place : AnyPlace{session, &timeline.Find(entry.id)});
   }
+  const bool all = places.empty() && !options.against;
   if (places.empty()) places.push_back({session, &timeline.last()});
   if (options.against && places.size() > 1) {
     throw InputError("", "against", "one step to set it against",
@@ -347,6 +352,14 @@ void SessionStrip(lua_State* L, const std::shared_ptr<Session>& session,
   };
   if (options.against) {
     WritePng(DrawPairOfBranches(end_of(places[0]), end_of(*options.against), options.shot), file);
+    return;
+  }
+  if (all) {
+    std::vector<const StepFacts*> done;
+    for (const auto& node : timeline.nodes()) done.push_back(&node->facts);
+    const RunSteps steps(std::move(done), timeline.last().facts, timeline);
+    const std::optional<Vector3> view;
+    WritePng(DrawContactSheet(steps, timeline, session->drawer(), options.shot, view), file);
     return;
   }
   std::vector<StripStep> steps;

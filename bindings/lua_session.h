@@ -84,6 +84,8 @@ void ReadPicture(lua_State* L, const Fields& fields, PictureConfig& picture);
 /// @throws InputError for a place among a run's files.
 std::filesystem::path PictureFile(lua_State* L, const std::string& file);
 
+/// What is asked for where the file of a picture is missing.
+inline constexpr const char* kWhereTo = "where the picture goes, as \"out/picture.png\"";
 /// The most steps of a strip, which are its list's entries.
 inline constexpr int kMostOfAStrip = 64;
 /// What strip{..} has besides: size, and where it goes.

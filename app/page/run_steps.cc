@@ -8,6 +8,20 @@
 namespace pregrasp {
 namespace {
 
+std::vector<const StepFacts*> StepsOf(const LoadedRun& run) {
+  std::vector<const StepFacts*> steps;
+  for (const StepFacts& step : run.steps) steps.push_back(&step);
+  return steps;
+}
+
+// @throws InputError for a run without steps.
+const StepFacts& EndOf(const LoadedRun& run) {
+  if (run.steps.empty()) {
+    throw InputError(run.directory.string(), "", "a run with a step at least", "none");
+  }
+  return run.Get(run.manifest.value("step", run.steps.back().id));
+}
+
 // `count` of them, evenly, the first and the last among them.
 std::vector<const StepFacts*> TakeEvenly(const std::vector<const StepFacts*>& steps,
                                          std::size_t count) {
@@ -61,13 +75,15 @@ const StepFacts* FindLift(const std::vector<const StepFacts*>& way) {
   return chosen;
 }
 
-RunSteps::RunSteps(const LoadedRun& run) : run_(run) {
-  if (run.steps.empty()) {
-    throw InputError(run.directory.string(), "", "a run with a step at least", "none");
+RunSteps::RunSteps(const LoadedRun& run) : RunSteps(StepsOf(run), EndOf(run), run) {}
+
+RunSteps::RunSteps(std::vector<const StepFacts*> steps, const StepFacts& end,
+                   const FactsSource& source)
+    : steps_(std::move(steps)), source_(source), end_(&end) {
+  for (const StepFacts* step : steps_) {
+    number_of_.emplace(step, static_cast<int>(number_of_.size()));
   }
-  const std::string end = run.manifest.value("step", run.steps.back().id);
-  end_ = &run.Get(end);
-  for (const StepFacts* at = end_;; at = &run.Get(at->command.node)) {
+  for (const StepFacts* at = end_;; at = &source_.Get(at->command.node)) {
     way_.push_back(at);
     on_way_.insert(at->id);
     if (at->command.node.empty()) break;
@@ -77,10 +93,10 @@ RunSteps::RunSteps(const LoadedRun& run) : run_(run) {
 
 const StepFacts* RunSteps::FindFailure(Verb verb) const {
   const StepFacts* first = nullptr;
-  for (const StepFacts& step : run_.steps) {
-    if (step.command.verb != verb || !HasFailed(step)) continue;
-    if (IsOnWay(step)) return &step;
-    if (first == nullptr) first = &step;
+  for (const StepFacts* step : steps_) {
+    if (step->command.verb != verb || !HasFailed(*step)) continue;
+    if (IsOnWay(*step)) return step;
+    if (first == nullptr) first = step;
   }
   return first;
 }
@@ -94,13 +110,14 @@ std::vector<const StepFacts*> RunSteps::FindStory(std::size_t most) const {
                                      FindFailure(Verb::kLift)};
   told.erase(nullptr);
   std::vector<const StepFacts*> iterations, keyframes, actions;
-  for (const StepFacts& step : run_.steps) {
+  for (const StepFacts* each : steps_) {
+    const StepFacts& step = *each;
     const Verb verb = step.command.verb;
     if (verb == Verb::kVerdict || verb == Verb::kSettle) told.insert(&step);
     if (!IsOnWay(step) || told.count(&step) > 0) continue;
     if (IsByHand(verb)) {
       actions.push_back(&step);
-    } else if (verb != Verb::kPath && !IsKeyStep(step, run_)) {
+    } else if (verb != Verb::kPath && !IsKeyStep(step, source_)) {
       continue;
     } else if (verb == Verb::kIterate) {
       iterations.push_back(&step);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,17 +15,20 @@ const StepFacts* FindGrasp(const std::vector<const StepFacts*>& way);
 /// The lift of that grasp on the way, else the last; null for none.
 const StepFacts* FindLift(const std::vector<const StepFacts*>& way);
 
-/// Which steps of a run matter, and how they hang together.
+/// Which steps of a run, or of a session so far, matter, and how they hang together.
 class RunSteps {
  public:
   explicit RunSteps(const LoadedRun& run);
+  /// @param steps  all of them in the order of doing; what they point to outlives this.
+  /// @param end    that the steps of interest led to.
+  RunSteps(std::vector<const StepFacts*> steps, const StepFacts& end, const FactsSource& source);
 
   /// The step that the run's summary is of.
   const StepFacts& end() const { return *end_; }
   /// Those that led to it, the start first.
   const std::vector<const StepFacts*>& way() const { return way_; }
   bool IsOnWay(const StepFacts& step) const { return on_way_.count(step.id) > 0; }
-  int NumberOf(const StepFacts& step) const { return run_.number_of.at(step.id); }
+  int NumberOf(const StepFacts& step) const { return number_of_.at(&step); }
 
   /// What the run is told by, in its order: verdicts on the start; key steps (IsKeyStep) on the
   /// way, with its grasp and lift, and where the way ends; and, from beside the way, the first
@@ -36,8 +40,10 @@ class RunSteps {
   // On the way if there is one, else the first.
   const StepFacts* FindFailure(Verb verb) const;
 
-  const LoadedRun& run_;
+  std::vector<const StepFacts*> steps_;
+  const FactsSource& source_;
   const StepFacts* end_ = nullptr;
+  std::map<const StepFacts*, int> number_of_;
   std::vector<const StepFacts*> way_;
   std::set<std::string> on_way_;
 };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "app/core/check.h"
-#include "app/page/run_steps.h"
 #include "app/pictures/words.h"
 
 namespace pregrasp {
@@ -115,10 +114,14 @@ Image DrawStripOfRun(const LoadedRun& run, const std::vector<std::string>& ids, 
 Image DrawContactSheet(const LoadedRun& run, const Shot& shot, const std::optional<Vector3>& view,
                        std::size_t most) {
   PictureDrawer drawer(run.scene, LabelsOf(run));
-  std::vector<StripStep> steps;
-  for (const StepFacts* step : RunSteps(run).FindStory(most))
-    steps.push_back({step, &run, &drawer});
-  return DrawGrid(MakeGrid(steps, shot, view));
+  return DrawContactSheet(RunSteps(run), run, drawer, shot, view, most);
+}
+
+Image DrawContactSheet(const RunSteps& steps, const FactsSource& source, PictureDrawer& drawer,
+                       const Shot& shot, const std::optional<Vector3>& view, std::size_t most) {
+  std::vector<StripStep> story;
+  for (const StepFacts* step : steps.FindStory(most)) story.push_back({step, &source, &drawer});
+  return DrawGrid(MakeGrid(story, shot, view));
 }
 
 }  // namespace pregrasp

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/page/picture_grid.h"
+#include "app/page/run_steps.h"
 #include "app/recording/loaded_run.h"
 #include "app/session/picture_file.h"
 
@@ -40,5 +41,7 @@ Image DrawStripOfRun(const LoadedRun& run, const std::vector<std::string>& ids, 
 /// The steps that a run is told by (RunSteps::FindStory) as one sheet, likewise.
 Image DrawContactSheet(const LoadedRun& run, const Shot& shot, const std::optional<Vector3>& view,
                        std::size_t most = 20);
+Image DrawContactSheet(const RunSteps& steps, const FactsSource& source, PictureDrawer& drawer,
+                       const Shot& shot, const std::optional<Vector3>& view, std::size_t most = 20);
 
 }  // namespace pregrasp

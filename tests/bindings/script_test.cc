@@ -158,10 +158,12 @@ TEST(ScriptTest, AFinishedRunIsReadBackStepByStep) {
     run:shot("sim.2", { file = "out/sim.png", size = { 160, 90 }, quality = "draft" })
     run:strip { "scene.start", "sim.2", file = "out/pictures/strip.png", size = { 400, 300 }, quality = "draft" }
     run:strip { file = "out/sheet.png", size = { 400, 600 }, quality = "draft" }
+    s:strip { file = "out/so_far.png", size = { 400, 600 }, quality = "draft" }
     sim:wait { seconds = 0.1 }
     s:save "out/longer"
     run:strip { against = pg.load "out/longer", file = "out/pair.png", size = { 600, 900 }, quality = "draft" }
     print(pcall(run.shot, run, "sim.2", {}))
+    print(pcall(run.strip, run, {}))
     print(pcall(run.strip, run, { "sim.3", file = "out/x.png" }))
     print(pcall(run.strip, run, { "sim.2", file = "out/run/frames/x.png" }))
     print(pcall(run.step, run, "sim.3"))
@@ -175,14 +177,20 @@ TEST(ScriptTest, AFinishedRunIsReadBackStepByStep) {
       "3\twait\tindex\ttrue\n"
       "true\ttrue\tnil\n";
   EXPECT_EQ(result.out.substr(0, start.size()), start);
-  for (const char* picture : {"sim.png", "pictures/strip.png", "sheet.png", "pair.png"}) {
+  for (const char* picture :
+       {"sim.png", "pictures/strip.png", "sheet.png", "so_far.png", "pair.png"}) {
     EXPECT_GT(ReadPng(folder.path() / "out" / picture).width, 0) << picture;
   }
+  // The key steps of a session so far are those of the run that it leaves.
+  EXPECT_EQ(ReadPng(folder.path() / "out/so_far.png").height,
+            ReadPng(folder.path() / "out/sheet.png").height);
   EXPECT_FALSE(fs::exists(folder.path() / "out/x.png"));
-  for (const char* part : {"file: expected where the picture goes, got nothing",
-                           "step: expected \"sim.1\", got \"sim.3\"", "frames/x.png: expected",
-                           "id: expected \"sim.1\", got \"sim.3\"", "unknown key \"steps\"",
-                           "out/manifest.json", "/etc/manifest.json"}) {
+  for (const char* part :
+       {"shot: file: expected where the picture goes, as \"out/picture.png\", got nothing",
+        "strip: file: expected where the picture goes, as",
+        "step: expected \"sim.1\", got \"sim.3\"", "frames/x.png: expected",
+        "id: expected \"sim.1\", got \"sim.3\"", "unknown key \"steps\"", "out/manifest.json",
+        "/etc/manifest.json"}) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part << '\n' << result.out;
   }
 }

@@ -454,6 +454,57 @@ TEST(SessionBindingTest, BigListsAreViewsThatReadAsTables) {
             "8\t12\t12\t12\t12\t12\n0.0600\ttrue\ttrue\ntrue\n");
 }
 
+TEST(SessionBindingTest, ARowOfAViewIsOneToo) {
+  EXPECT_EQ(Script(R"(
+    local s = open()
+    local mesh = s:mesh{ triangles = 12 }
+    local vertices, triangles, copy = mesh.vertices, mesh.triangles, mesh.vertices:table()
+    local row = vertices[2]
+    for _, change in ipairs{ function() vertices[2][1] = 5 end, function() row[1] = 5 end, function() triangles[1][4] = 1 end } do
+      print((select(2, pcall(change)):match "Array.*"))
+    end
+    print(row, triangles[1], math.type(triangles[1][1]), #row, row[4])
+    print(table.concat(row, ' ') == table.concat(copy[2], ' '), select('#', table.unpack(row)))
+    copy[2][1] = 5
+    print(copy[2][1], row[1] == vertices[2][1], row:table()[3] == row[3])
+    -- a row is taken where a vector is
+    print(s:distance(row).phi == s:distance(row:table()).phi)
+    local ok, refusal = pcall(s.what_if, s, { set = { ["object.p"] = row } })
+    print(ok or not refusal:find "object.p")
+    print(select(2, pcall(s.settle, s, { seconds = vertices })))
+    print(select(2, pcall(vertices.table, 3)))
+  )"),
+            "Array: can only be read; x:table() is a copy to change\n"
+            "Array: can only be read; x:table() is a copy to change\n"
+            "Array: can only be read; x:table() is a copy to change\n"
+            "Array(3 number)\tArray(3 integer)\tinteger\t3\tnil\ntrue\t3\n5\ttrue\ttrue\ntrue\n"
+            "true\nsettle: seconds: expected a number, got an Array\n"
+            "table: expected an Array before a colon (x:table), got 3\n");
+}
+
+TEST(SessionBindingTest, WhatIsSetIsBlamedOnTheKeyThatWasTyped) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"open{ set = { hand = 'nonsense' } }", "open: set: hand: expected the name of a hand ("},
+      {"open{ set = { hand = 'nowhere/hand.lua' } }",
+       "open: set: hand \"nowhere/hand.lua\": expected a file, got nothing of that name"},
+      {"open{ set = { ['object.mass'] = -1 } }", "open: set: object.mass: expected a number from"},
+      {"open{ set = { ['mppi.sigma'] = -1 } }", "open: set: mppi.sigma: expected a number from"},
+      {"open{ set = { ['object.name'] = 'a b' } }", "open: set: object.name: expected a name of"},
+      {"open():what_if{ set = { hand = 'nonsense' } }", "what_if: set: hand: expected the name of"},
+      {"open():what_if{ set = { hand = '/etc/passwd/x.lua' } }",
+       "what_if: set: hand \"/etc/passwd/x.lua\": expected a file, got nothing of that name"},
+      {"pg.eval{ dir = 'out/x', scenes = { 'scenes/ruler.lua' }, set = { hand = 'nonsense' } }",
+       "eval: set: hand: expected the name of a hand ("},
+      {"pg.eval{ dir = 'out/x', scenes = { 'scenes/ruler.lua' }, set = { foo = 1 } }",
+       "eval: set: expected a key that can be set, as object.mass"},
+      {"open():settle{ seconds = 0 / 0 }", "settle: seconds: expected a finite number, got nan"},
+      {"open():strip{}", "strip: file: expected where the picture goes, as \"out/picture.png\", got"},
+  };
+  for (const auto& [code, expected] : cases) {
+    EXPECT_EQ(Failure(code).find(expected), 0U) << code << ": " << Failure(code);
+  }
+}
+
 TEST(SimulationBindingTest, NumbersAreInTheUnitsThatTheManualSays) {
   EXPECT_EQ(Script(R"(
     local function norm(v) return math.sqrt(v[1]^2 + v[2]^2 + v[3]^2) end
@@ -536,7 +587,7 @@ TEST(SessionBindingTest, WhatIsOftenMistypedIsNamed) {
   EXPECT_EQ(Failure("pg.check 'no_such_thing'"),
             "check: no_such_thing: expected a file, got nothing of that name");
   EXPECT_EQ(Failure("open():plan{ set = { sigma = 0.3 } }"),
-            "plan: --set: expected a key that can be set, as object.mass or mppi.sigma (pregrasp "
+            "plan: set: expected a key that can be set, as object.mass or mppi.sigma (pregrasp "
             "info --settings lists the planner's), got \"sigma\"");
 }
 
