@@ -75,7 +75,23 @@ local function plan()
   set["screen.paths"] = random(2) set["mppi.iterations"] = random(3)
   return { paths = random(2), plans = 1, motions = 1, all = random(2) == 1, set = set }
 end
+local within_rules = {} for key, value in pairs(cheap) do within_rules[key] = value end
+within_rules["certify.hold_seconds"], within_rules["screen.paths"], within_rules["mppi.iterations"] = nil, 1, 1
+local wrong = { dir = { "/etc", "../x", 3 }, study = { "lader", 1, "ladder" }, scenes = { {}, { 3 }, "ruler", { "scenes/rulr.lua" } },
+  seeds = { 0, 1.5, 1e9 }, first_seed = { -1, "x" }, paths = { 0, "2" }, threads = { -1, 1e9 }, keep_runs = { 1 }, nothing = { 1 },
+  set = { { hand = "nonsense" }, { ["object.mass"] = -1 }, { ["certify.hold_seconds"] = 0.05 }, { ["mppi.sigm"] = 1 }, 3 } }
+local evals = 0
+local function eval()  -- each third one is good; the first of these makes an item, the others find it
+  local options = { dir = "out/eval", scenes = { "scenes/ruler.lua" }, seeds = 1, paths = 1, threads = 1, set = within_rules }
+  evals = evals + 1
+  if evals % 3 == 1 then return options end
+  local keys = {} for key in pairs(wrong) do keys[#keys + 1] = key end
+  local key = pick(keys)
+  options[key] = pick(wrong[key])
+  return options
+end
 local module = {
+  eval = eval,
   compare = function() return (any()), (any()) end,
   load_state = function() return pick(saved) end, load = function() return pick(finished) end,
   wrench = function() return { p = { point(), point() }, n = { {1, 0, 0}, {-1, 0, 0} }, mu = random(), mass = 0.1 * random() } end,
@@ -151,7 +167,7 @@ local function junk(depth)
   return random()
 end
 local costly = { what_if = 0.4, save_state = 0.2, trace = 0.2, check = 0.2, plan = 0.3, graph = 0.4, certify = 0.3, grasps = 0.4, optimize = 0.5,
-  save = 0.1, record = 0.05, shot = 0.05, strip = 0.05, motion = 0.1, verdict = 0.1, load_state = 0.5, load = 0.3, run = 0.4 }
+  save = 0.1, record = 0.05, shot = 0.05, strip = 0.05, motion = 0.1, verdict = 0.1, load_state = 0.5, load = 0.3, run = 0.4, eval = 0.5 }
 local calls, passed, depth = 0, 0, 0
 local tried, done = {}, {}  -- calls with good arguments, and those of them that gave a result, by Class:method
 local function count_good(name, ok, ...)
@@ -210,6 +226,9 @@ end
 while calls < count do
   if not pool.Session or random(400) == 1 then keep(open()) end
   if not pool.Shape then keep(pg.box{1, 1, 1}) end
+  if not pool.Plan then keep(pick(pool.Session):plan(plan())) end
+  if random(80) == 1 then count_good("Plan:step", pcall(function() return pick(pool.Plan):step(random(3)) end)) end
+  if random(80) == 1 then calls = calls + 1 call_module "eval" end
   step(false)
 end
 print(calls, passed)
@@ -242,11 +261,14 @@ TEST_P(FuzzCallsTest, RandomCallsGiveResultsOrOneLine) {
   EXPECT_FALSE(out.fail()) << out.str();
   EXPECT_GE(calls, count);
   EXPECT_GE(3 * passed, calls) << "most calls fail at their arguments";
-  constexpr long kEnoughForAll = 5000;
-  if (count < kEnoughForAll) return;
   std::map<std::string, int> done;
   std::string name;
   for (int tried = 0, good = 0; out >> name >> tried >> good;) done[name] = good;
+  for (const char* must : {"Plan:step", "eval"}) {
+    EXPECT_GE(done[must], 1) << must << " never gave a result";
+  }
+  constexpr long kEnoughForAll = 5000;
+  if (count < kEnoughForAll) return;
   for (const char* must :
        {"Plan:step", "Plan:run", "Plan:next_stage", "Plan:back", "Plan:forward", "Plan:object",
         "Session:plan", "Session:go", "Session:save_state", "Session:what_if", "Graph:what_if",
