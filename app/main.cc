@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <system_error>
@@ -39,6 +40,12 @@ void OpenStandardStreams() {
     if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
     if (open("/dev/null", O_RDWR) != stream) std::_Exit(kInternalError);  // the lowest that is free
   }
+}
+
+// Whether a path that the user gave, or one below it, is such that nothing can be looked at there.
+bool IsOutOfReach(const std::error_code& code) {
+  return code == std::errc::permission_denied || code == std::errc::not_a_directory ||
+         code == std::errc::filename_too_long || code == std::errc::too_many_symbolic_link_levels;
 }
 
 // What was printed must have arrived: exit code 0 says so.
@@ -116,6 +123,13 @@ int main(int argc, char** argv) {
     return Fail(kBadInput, error.what());
   } catch (const Interrupted& error) {
     return Fail(kInterrupted, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    if (!IsOutOfReach(error.code())) {
+      return Fail(kInternalError, std::string("pregrasp: ") + error.what());
+    }
+    const InputError refusal(error.path1().string(), "", "a path that can be reached",
+                             error.code().message());
+    return Fail(kBadInput, refusal.what());
   } catch (const std::system_error& error) {  // no more threads, a full disk, a lost file
     return Fail(kInternalError, std::string("pregrasp: ") + error.what());
   } catch (const std::bad_alloc&) {

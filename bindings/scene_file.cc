@@ -71,7 +71,8 @@ fs::path FindHandFile(const Scene& scene, const fs::path& folder, const FileAcce
 // What is not there is refused with the nearest scene that is.
 void LoadWithHint(Machine& machine, const fs::path& file) {
   std::error_code ignored;
-  const fs::path nearest = fs::exists(file, ignored) ? "" : FindNearestScene(file.string());
+  const bool missing = fs::status(file, ignored).type() == fs::file_type::not_found;
+  const fs::path nearest = missing ? FindNearestScene(file.string()) : fs::path();
   try {
     machine.LoadFile(machine.state(), file);
   } catch (const InputError& error) {

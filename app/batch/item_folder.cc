@@ -12,6 +12,7 @@
 #include "app/batch/item_record.h"
 #include "app/core/check.h"
 #include "app/core/error.h"
+#include "app/core/file_kind.h"
 
 namespace pregrasp {
 namespace {
@@ -54,10 +55,12 @@ fs::path ItemPath(const fs::path& folder, std::int64_t index, const std::string&
 }
 
 std::string ReadWholeFile(const fs::path& file) {
+  const std::string other = DescribeNonFile(file);
+  if (!other.empty()) throw InputError(file.string(), "", "a readable file", other);
   std::ifstream in(file, std::ios::binary);
   std::stringstream text;
   text << in.rdbuf();
-  if (!in) throw InputError(file.string(), "", "a readable file", "none");
+  if (!in) throw InputError(file.string(), "", "a readable file", "one that cannot be read");
   return text.str();
 }
 

@@ -35,7 +35,10 @@ std::string DescribeNonFile(const fs::path& path) {
 std::string NonFileClause(const fs::path& path) {
   const std::string what = DescribeNonFile(path);
   if (what.empty()) return what;
-  return what == kNoSuchFile ? "which does not exist" : "which is " + what;
+  if (what == kNoSuchFile) return "which does not exist";
+  const std::string one_that = "one that ";
+  if (what.starts_with(one_that)) return "which " + what.substr(one_that.size());
+  return "which is " + what;
 }
 
 }  // namespace pregrasp

@@ -121,6 +121,7 @@ std::string ReadSource(const fs::path& file) {
   const std::string other = DescribeNonFile(file);
   if (!other.empty()) throw InputError(file.string(), "", "a hand.lua", other);
   std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string(), "", "a hand.lua", "one that cannot be read");
   std::string text(kMaxSource + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));

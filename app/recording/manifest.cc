@@ -54,7 +54,11 @@ bool ProvesItself(std::string text, const std::string& hash) {
 
 void RequireFolder(const fs::path& directory) {
   std::error_code error;
-  if (fs::is_directory(directory, error)) return;
+  if (fs::is_directory(directory, error)) {
+    if (fs::status_known(fs::status(directory / kName, error))) return;
+    throw InputError(directory.string(), "", kFinishedRun,
+                     "a folder that cannot be searched (" + error.message() + ")");
+  }
   const std::string other = DescribeNonFile(directory);
   throw InputError(directory.string(), "", kFinishedRun, other.empty() ? "a file" : other);
 }

@@ -143,6 +143,34 @@ TEST(ProcessTest, WhatTheCommandLineDoesNotHaveIsNamedWithTheNearest) {
   }
 }
 
+TEST(ProcessTest, WhatMayNotBeLookedAtIsBadInput) {
+  const TestFolder folder;
+  folder.Write("closed/scene.lua", "");
+  folder.Write("unreadable.lua", "");
+  // root may look at all: a user without rights does it, where the machine lets us be one.
+  const std::string drop =
+      getuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
+  fs::permissions(folder.path(), fs::perms::owner_all | fs::perms::others_all);
+  fs::permissions(folder.path() / "closed", fs::perms::none);
+  fs::permissions(folder.path() / "unreadable.lua", fs::perms::none);
+  const std::pair<std::string, std::string> cases[] = {
+      {"run closed/scene.lua", "closed/scene.lua: expected a file, got one that cannot be reached"},
+      {"run unreadable.lua", "unreadable.lua: expected a file that can be read"},
+      {"hand check ./unreadable.lua", "./unreadable.lua: expected a hand.lua, got one that cannot"},
+      {"verify closed", "closed: expected a finished run, got a folder that cannot be searched ("},
+      {"jobs status closed", "closed/jobs.json: expected a path that can be reached, got Perm"},
+      {"eval --scenes closed/scene.lua --out x",
+       "closed/scene.lua: expected a path that can be reached, got Permission denied"},
+  };
+  if (Shell(drop + "test -x $PREGRASP", folder) != 0) GTEST_SKIP() << "no user without rights";
+  for (const auto& [words, expected] : cases) {
+    EXPECT_EQ(Shell(drop + "$PREGRASP " + words + " > out.txt 2> err.txt", folder), 2) << words;
+    const std::string line = ReadText(folder.path() / "err.txt");
+    EXPECT_EQ(line.find(expected), 0U) << words << ": " << line;
+  }
+  fs::permissions(folder.path() / "closed", fs::perms::owner_all);
+}
+
 TEST(ProcessTest, AnUnknownDriverOfPicturesIsBadInput) {
   const TestFolder folder;
   EXPECT_EQ(Shell("GALLIUM_DRIVER=nope $PREGRASP info > out.txt 2> err.txt", folder), 2);

@@ -46,6 +46,7 @@ TEST(FileKindTest, WhatIsNoFileIsCalledWhatItIs) {
   EXPECT_EQ(DescribeNonFile(at / "loop").find("one that cannot be reached (Too many"), 0U);
   EXPECT_EQ(NonFileClause(at / "nothing"), "which does not exist");
   EXPECT_EQ(NonFileClause(at / "pipe"), "which is a pipe");
+  EXPECT_EQ(NonFileClause(at / "loop").find("which cannot be reached (Too many"), 0U);
   close(descriptor);
 }
 
