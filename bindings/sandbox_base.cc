@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -213,6 +214,10 @@ int Load(lua_State* L) {
 void PushText(lua_State* L, int index) {
   index = lua_absindex(L, index);
   const int kind = lua_type(L, index);
+  if (kind == LUA_TNUMBER && std::isnan(lua_tonumber(L, index))) {
+    lua_pushliteral(L, "nan");  // whose sign is the processor's
+    return;
+  }
   const bool has_address = kind == LUA_TTABLE || kind == LUA_TUSERDATA || kind == LUA_TFUNCTION ||
                            kind == LUA_TTHREAD || kind == LUA_TLIGHTUSERDATA;
   if (has_address) {

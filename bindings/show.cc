@@ -45,7 +45,8 @@ std::string ShowText(lua_State* L, int index) {
 
 std::string ShowNumber(lua_State* L, int index, int digits) {
   if (lua_isinteger(L, index)) return std::to_string(lua_tointeger(L, index));
-  return fmt::format("{:.{}g}", lua_tonumber(L, index) + 0.0, digits);  // without a zero's sign
+  const double number = lua_tonumber(L, index) + 0.0;  // without a zero's sign
+  return std::isnan(number) ? "nan" : fmt::format("{:.{}g}", number, digits);
 }
 
 // A locked library or module stands for the table behind it: replaces the value on top.

@@ -10,8 +10,8 @@ namespace pregrasp {
 /// `key.path=value` of the command line's --set, or of a script's `set` table: changes one value of
 /// the scene or of a stage's configuration without editing a file.
 struct Setting {
-  std::string key;    ///< "fingertips.friction", "environment.left.mass"
-  std::string value;  ///< as written: a number, {x, y, z} as "0,0,0.1", a name
+  std::string key;              ///< "fingertips.friction", "environment.left.mass"
+  std::string value;            ///< as written: a number, {x, y, z} as "0,0,0.1", a name
   std::string where = "--set";  ///< what messages about it begin with: as its user typed it
 };
 

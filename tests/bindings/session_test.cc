@@ -482,6 +482,11 @@ TEST(SessionBindingTest, ARowOfAViewIsOneToo) {
             "table: expected an Array before a colon (x:table), got 3\n");
 }
 
+TEST(SessionBindingTest, NanIsPrintedWithoutASign) {
+  EXPECT_EQ(Script("local x = 0 / 0 print(x, -x, tostring(x), tostring(-x))"),
+            "nan\tnan\tnan\tnan\n");
+}
+
 TEST(SessionBindingTest, WhatIsSetIsBlamedOnTheKeyThatWasTyped) {
   const std::pair<const char*, const char*> cases[] = {
       {"pg.open('scenes/ruler.lua', { set = { hand = 'nonsense' } })",
