@@ -11,6 +11,7 @@
 #include "app/grasp/grasp_room.h"
 #include "app/job/planner_settings.h"
 #include "app/motion/touches.h"
+#include "app/trajectory/robust.h"
 
 namespace pregrasp {
 namespace {
@@ -108,6 +109,8 @@ Planner::Planner(std::shared_ptr<const World> world, const HandModel& hand, Worl
   config.Validate();
   RequireForces(config, scene());
   half_world_ = std::make_shared<const World>(scene(), HalfStep(world_->config()));
+  extreme_worlds_ = std::make_shared<const std::vector<World>>(
+      MakeExtremeWorlds(scene(), world_->config()));
   environment_ = std::make_shared<const EnvironmentDistance>(scene());
   shape_ = std::make_shared<const SignedDistance>(scene().object().shape);
   score_ =
@@ -160,6 +163,7 @@ Mppi Planner::MakeMppi(const ContactGraph& graph, const ContactPath& path,
   problem.shape = shape_.get();
   problem.graph = &graph;
   problem.scorer = scorer_.get();
+  problem.others = extreme_worlds_.get();
   problem.room = config.weights.room > 0.0 ? room_.get() : nullptr;
   problem.start = start_;
   problem.path = path;

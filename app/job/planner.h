@@ -185,6 +185,7 @@ class Planner {
   std::uint64_t seed_;
   ThreadPool& pool_;
   std::shared_ptr<const World> half_world_;
+  std::shared_ptr<const std::vector<World>> extreme_worlds_;
   std::shared_ptr<const EnvironmentDistance> environment_;
   std::shared_ptr<const SignedDistance> shape_;
   std::shared_ptr<const ScoreFunction> score_;

@@ -140,11 +140,18 @@ class Runner {
     }
   };
 
-  // More grasps that lift; among equals, more worlds in which the plan holds (design, section 4).
-  static bool PromisesMore(const TriedPlan& x, const TriedPlan& y) {
-    const Progress &a = x.end->progress, &b = y.end->progress;
-    return std::tuple(a.reached, a.lifted, x.worlds_held(), a.feasible) >
-           std::tuple(b.reached, b.lifted, y.worlds_held(), b.feasible);
+  // Of the plans that go furthest, those with at least half as many grasps that lift as any; among
+  // them, the more worlds a plan holds in the better.
+  static void Order(std::vector<TriedPlan>& plans) {
+    int most = 0;
+    for (const TriedPlan& plan : plans) most = std::max(most, plan.end->progress.lifted);
+    const auto key = [&](const TriedPlan& plan) {
+      const Progress& progress = plan.end->progress;
+      return std::tuple(progress.reached, 2 * progress.lifted >= most, plan.worlds_held(),
+                        progress.lifted, progress.feasible);
+    };
+    std::stable_sort(plans.begin(), plans.end(),
+                     [&](const TriedPlan& x, const TriedPlan& y) { return key(x) > key(y); });
   }
 
   // Further; or as far, with fewer frames beyond the hand's limits.
@@ -171,12 +178,13 @@ class Runner {
     const Node& optimised = Optimise(path, name);
     const auto count = std::ssize(timeline_.GetState(optimised)->optimization->plans);
     std::vector<TriedPlan> plans;
-    int certified = 0;
-    for (int plan = 1; plan <= count && certified < config_.plans; ++plan) {
+    int certified = 0, lifting = 0;
+    for (int plan = 1; plan <= count && (certified < config_.plans || lifting == 0); ++plan) {
       plans.push_back(TryPlan(optimised, plan, {}, name));
       certified += plans.back().end->progress.reached >= Progress::Reached::kCertified ? 1 : 0;
+      lifting += plans.back().lifting.empty() ? 0 : 1;
     }
-    std::stable_sort(plans.begin(), plans.end(), PromisesMore);
+    Order(plans);
     TriedMotions motions = MoveHands(plans, name);
     if (!motions.done && motions.haste.value_or(1.0) > 1.0) {
       const Node* const best = motions.best;
@@ -201,7 +209,7 @@ class Runner {
       if (plan.lifting.empty() || slowed.size() == kSlowed) continue;
       slowed.push_back(TryPlan(optimised, plan.plan, {{"settings", settings}}, name));
     }
-    std::stable_sort(slowed.begin(), slowed.end(), PromisesMore);
+    Order(slowed);
     return slowed;
   }
 

@@ -16,8 +16,9 @@ struct RunConfig {
   int paths = 10;    ///< full optimisations at most, of kPaths (design: the budget)
   bool all = false;  ///< go on to the last path after the first success
   int motions = 6;   ///< lifting grasps of one path whose hand motion is tried
-  int plans = 4;     ///< of one path that are certified, their ends differing: of these the one
-                     ///< with most lifting grasps is taken on
+  int plans = 4;     ///< of one path that are certified, their ends differing, and more until one
+                     ///< has a grasp that lifts: of those with at least half as many as any, the
+                     ///< one that holds in most worlds is taken on
   /// Of the planner, by full name, from the graph on; where they are those of the job, none.
   nlohmann::json settings = nlohmann::json::object();
 

@@ -199,6 +199,13 @@ Settings MppiSettings() {
        "weight: a tip that touches is over 0.8 m/s or 8 m/s^2, by the excess, at most 1",
        FIELD(mppi.weights.haste),
        {}},
+      {"mppi.fragility",
+       Real(0.0, 1.0),
+       "weight: what a plan gains, by how far away (4 cm or 20 deg count as 1) it ends in a "
+       "lighter, "
+       "more slippery and in a heavier, stickier world",
+       FIELD(mppi.weights.fragility),
+       {}},
       {"mppi.fall",
        Real(0.0, 1000.0),
        "weight: the object fell out of the scene",

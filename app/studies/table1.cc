@@ -254,11 +254,12 @@ std::string MarkdownText(const std::vector<Row>& rows) {
          "all.\nr_suc is the share of the generated grasps that are feasible, raw without "
          "refinement. Each is the first of up to\ngrasps.draws draws whose forces hold, and "
          "completes contacts in which a trial draw was feasible (grasps.pilots); trials do\nnot "
-         "count. Of the plans of a path, the one with most lifting grasps is taken. r_lift is the "
-         "share that is lifted too.\nN_paths counts full optimisations until success. The strategy "
-         "is the fingers of the last stage, and how far (medians)\nthe object moved and turned "
-         "until it was grasped. The paper's columns are its table of all tasks, three runs each.\n"
-         "\n" +
+         "count. Of the plans of a path with at least half as many lifting grasps as any, the one "
+         "that holds in most of five changed\nworlds is taken. r_lift is the share that is lifted "
+         "too. N_paths counts full optimisations until success; rollouts do not\ncount the "
+         "simulations of the better ones in two other worlds. The strategy is the fingers of the "
+         "last stage, and how far\n(medians) the object moved and turned until it was grasped. The "
+         "paper's columns are its table of all tasks, three runs each.\n\n" +
          MarkdownTable(table) + "\nEvery run:\n\n" + MarkdownTable(runs);
 }
 

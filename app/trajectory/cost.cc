@@ -6,6 +6,7 @@
 #include "app/core/check.h"
 #include "app/core/finite.h"
 #include "app/trajectory/certify.h"
+#include "app/trajectory/robust.h"
 
 namespace pregrasp {
 namespace {
@@ -41,9 +42,21 @@ std::span<const CostTerm> CostTerms() {
       {"tip_spacing", &PlanCost::tip_spacing, &CostWeights::tip_spacing, false},
       {"hold", &PlanCost::hold, &CostWeights::hold, false},
       {"haste", &PlanCost::haste, &CostWeights::haste, false},
+      {"fragility", &PlanCost::fragility, &CostWeights::fragility, false},
       {"fall", &PlanCost::fall, &CostWeights::fall, false},
   };
   return kTerms;
+}
+
+double CalcFragility(const WorldState& end, std::span<const WorldState> others) {
+  double sum = 0.0;
+  for (const WorldState& other : others) {
+    double shift = 0.0, turn_deg = 0.0;
+    CalcShift(end, other, &shift, &turn_deg);
+    const double away = std::max(shift / kRobustShift, turn_deg / kRobustTurnDeg);
+    sum += std::min(0.5 * away, 1.0);
+  }
+  return others.empty() ? 0.0 : sum / static_cast<double>(others.size());
 }
 
 double CalcReward(std::span<const double> stage_scores, double final_value) {
@@ -140,6 +153,14 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
   }
   PREGRASP_CHECK(AreFinite(cost.total, cost.stage_scores, final_score), cost.total, final_score);
   return cost;
+}
+
+void AddFragility(PlanCost& cost, double fragility, const CostWeights& weights,
+                  double rest_reward) {
+  PREGRASP_CHECK(fragility >= 0.0 && fragility <= 1.0, fragility);
+  cost.total -= cost.fragility;
+  cost.fragility = weights.fragility * fragility * std::max(cost.reward - rest_reward, 0.0);
+  cost.total += cost.fragility;
 }
 
 }  // namespace pregrasp

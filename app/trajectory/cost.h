@@ -30,6 +30,7 @@ struct CostWeights {
   double haste = 2.0;        ///< a tip that touches moves faster than 0.8 m/s or speeds up by more
                              ///< than 8 m/s^2: the larger ratio's excess over 1, at most 1. Hardly
                              ///< a hand follows (HandLimits); where nothing else helps, it may try
+  double fragility = 0.33;   ///< what a plan gains over doing nothing, by CalcFragility
   double fall = 1.5;         ///< the object fell out of the scene, or the simulation diverged
 };
 
@@ -40,7 +41,7 @@ struct PlanCost {
   double room = 0.0;                 ///< GraspRoom there; 0 where none is asked
   double reward = 0.0;               ///< CalcReward of these
   double no_contact = 0.0, slip = 0.0, effort = 0.0, unrest = 0.0, speed = 0.0;
-  double tip_overlap = 0.0, tip_spacing = 0.0, hold = 0.0, haste = 0.0, fall = 0.0;
+  double tip_overlap = 0.0, tip_spacing = 0.0, hold = 0.0, haste = 0.0, fragility = 0.0, fall = 0.0;
   double total = 0.0;
 
   /// What compares plans of different paths: without the tie-breakers, whose scale is a path's own.
@@ -56,6 +57,11 @@ struct CostTerm {
   bool tie_breaker;  ///< weighed by the scale of the path's scores
 };
 std::span<const CostTerm> CostTerms();
+
+/// How little a plan does elsewhere of what it does here: how far from its `end`, or how far turned
+/// from it, the same targets leave the object in each of `others`, over twice the 2 cm and 10
+/// degrees of the design's "robust", at most 1, their mean.
+double CalcFragility(const WorldState& end, std::span<const WorldState> others);
 
 /// What a plan is after: the paper's sum of scores at the stages' starts and at the end, but a
 /// start counts at most as much as the end. A plan that swings the object up and drops it is worth
@@ -78,11 +84,14 @@ ScoredState EndToScore(const World& world, const PlanOutcome& outcome);
 std::vector<GraspContact> KeptContacts(const ScoredState& end);
 
 /// The cost of a plan from its outcome, the scores of StatesToScore, in order, how graspable the
-/// object is at the end, and the room for grasps there.
+/// object is at the end, and the room for grasps there; its fragility is 0, for AddFragility.
 /// @param force_scale  the largest force that a plan may ask for [N].
 /// @param score_scale  what the tie-breakers are weighed by: CalcScoreScale of the path.
 PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
                       std::span<const double> stage_scores, double final_score, double room,
                       const CostWeights& weights, double force_scale, double score_scale);
+
+/// @param fragility  from 0 to 1. @param rest_reward  of doing nothing.
+void AddFragility(PlanCost& cost, double fragility, const CostWeights& weights, double rest_reward);
 
 }  // namespace pregrasp

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "app/core/check.h"
@@ -138,7 +139,51 @@ void Mppi::FixScale(MppiState& state, const std::vector<Judged>& judged) const {
   state.score_scale = CalcScoreScale(rewards);
 }
 
+double Mppi::TryElsewhere(const PlanOutcome& nominal) const {
+  if (nominal.diverged) return 1.0;
+  std::vector<WorldState> ends;
+  for (const World& world : *problem_.others) {
+    ends.push_back(SimulatePlan(world, *problem_.environment, problem_.start, nominal.plan,
+                                config_.timing, Stepper::kKernel)
+                       .end);
+  }
+  return CalcFragility(nominal.end, ends);
+}
+
+void Mppi::AddFragilities(const std::vector<PlanOutcome>& outcomes, double rest_reward,
+                          std::vector<MppiSample>& samples, ThreadPool& pool) const {
+  std::vector<int> order(samples.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return samples[a].cost.total < samples[b].cost.total; });
+  const int tried = static_cast<int>((samples.size() + 1) / 2);
+  pool.ParallelFor(static_cast<int>(order.size()), [&](int k, int) {
+    ThrowIfInterrupted();
+    const double fragility = k < tried ? TryElsewhere(outcomes[order[k]]) : 1.0;
+    AddFragility(samples[order[k]].cost, fragility, config_.weights, rest_reward);
+  });
+}
+
+void Mppi::TryPlansElsewhere(MppiState& state, ThreadPool& pool) const {
+  if (!is_tried_elsewhere()) return;
+  std::vector<MppiPlan>& plans = state.plans;
+  pool.ParallelFor(static_cast<int>(plans.size()), [&](int i, int) {
+    ThrowIfInterrupted();
+    const double fragility = TryElsewhere(Simulate(plans[i].action));
+    AddFragility(plans[i].cost, fragility, config_.weights, state.rest_reward);
+  });
+  std::stable_sort(plans.begin(), plans.end(), [](const MppiPlan& a, const MppiPlan& b) {
+    return a.cost.total < b.cost.total;
+  });
+  SetBest(state);
+}
+
 void Mppi::Step(MppiState& state, ThreadPool& pool) const {
+  if (state.iteration == 0 && !state.plans.empty()) TryPlansElsewhere(state, pool);
+  Iterate(state, true, pool);
+}
+
+void Mppi::Iterate(MppiState& state, bool elsewhere, ThreadPool& pool) const {
   const std::vector<std::vector<double>> actions = SampleActions(state);
   const int count = static_cast<int>(actions.size());
   std::vector<PlanOutcome> outcomes(count);
@@ -156,6 +201,10 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
     sample.cost = CalcCost(outcomes[i], judged[i], state.score_scale);
     sample.X_WO_end = outcomes[i].end.bodies.front().X_WB();
     PREGRASP_CHECK(AreFinite(sample.cost.total, sample.X_WO_end), i, sample.cost.total);
+  }
+  if (elsewhere && is_tried_elsewhere())
+    AddFragilities(outcomes, state.rest_reward, state.samples, pool);
+  for (const MppiSample& sample : state.samples) {
     mean_cost += sample.cost.total / count;
     Offer(state, sample);
   }
@@ -170,13 +219,33 @@ void Mppi::Step(MppiState& state, ThreadPool& pool) const {
 }
 
 void Mppi::Screen(MppiState& state, int iterations, ThreadPool& pool) const {
-  for (int i = 0; i < iterations; ++i) Step(state, pool);
+  for (int i = 0; i < iterations; ++i) Iterate(state, false, pool);
   state.screened += state.iteration;
   state.iteration = 0;
   if (state.rose_at > 0) state.rose_at = 1;
   state.best_history.clear();
   state.mean_history.clear();
   state.end = MppiEnd::kNone;
+}
+
+// The plan to leave out. Where only a fragile plan gets the object to where a grasp is, robust ones
+// that do not must not crowd it out: the list holds the best by cost and the best by cost without
+// fragility.
+std::vector<MppiPlan>::iterator Mppi::FindLeastPromising(std::vector<MppiPlan>& plans) {
+  const auto bare = [](const MppiPlan& plan) { return plan.cost.total - plan.cost.fragility; };
+  auto least = plans.end();
+  std::ptrdiff_t least_rank = -1;
+  for (auto plan = plans.begin(); plan != plans.end(); ++plan) {
+    const std::ptrdiff_t by_cost = plan - plans.begin();  // they are in its order
+    const std::ptrdiff_t by_bare =
+        std::count_if(plans.begin(), plans.end(),
+                      [&](const MppiPlan& other) { return bare(other) < bare(*plan); });
+    const std::ptrdiff_t rank = std::min(by_cost, by_bare);
+    if (rank < least_rank) continue;
+    least = plan;
+    least_rank = rank;
+  }
+  return least;
 }
 
 // Keeps the best of all plans whose ends differ.
@@ -196,10 +265,15 @@ void Mppi::Offer(MppiState& state, const MppiSample& sample) {
     return sample.cost.total < plan.cost.total;
   });
   plans.insert(place, {sample.action, sample.cost, sample.X_WO_end});
-  if (static_cast<int>(plans.size()) > kMostPlans) plans.pop_back();
-  state.best_cost = plans.front().cost.total;
-  state.best = plans.front().cost;
-  state.best_action = plans.front().action;
+  if (static_cast<int>(plans.size()) > kMostPlans) plans.erase(FindLeastPromising(plans));
+  SetBest(state);
+}
+
+void Mppi::SetBest(MppiState& state) {
+  const MppiPlan& best = state.plans.front();
+  state.best_cost = best.cost.total;
+  state.best = best.cost;
+  state.best_action = best.action;
 }
 
 void Mppi::CheckEnd(MppiState& state) const {

@@ -75,8 +75,8 @@ struct MppiState {
   double rest_reward = 0.0;  ///< of doing nothing: no finger on
   int rose_at = 0;           ///< the iteration of the first rise, from 1; 0 before it
   std::vector<double> mean;
-  /// The best of all iterations whose ends differ, best first, at most kMostPlans: what may be put
-  /// to certification. plans[0] is `best`.
+  /// The best of all iterations whose ends differ, best first, at most kMostPlans: by cost, and by
+  /// cost without fragility. What may be put to certification; plans[0] is `best`.
   std::vector<MppiPlan> plans;
   std::vector<double> best_action;  ///< of all iterations
   PlanCost best;
@@ -97,6 +97,8 @@ struct MppiProblem {
   const ContactGraph* graph = nullptr;
   const StateScorer* scorer = nullptr;
   const GraspRoom* room = nullptr;  ///< may be null: the learned score alone
+  /// In which plans are tried, too (MakeExtremeWorlds); may be null: in none.
+  const std::vector<World>* others = nullptr;
   WorldState start;
   ContactPath path;
   std::uint64_t seed = 1;  ///< of the run; path.rank and the iteration key the noise too
@@ -110,11 +112,12 @@ class Mppi {
   MppiState Start() const;
 
   /// One iteration: sample around the mean, roll out, score, weigh, move the mean. Sample 0 is the
-  /// mean itself, sample 1 the best plan so far. The same bits for any number of threads.
+  /// mean itself, sample 1 the best plan so far. The better half is tried in the other worlds, too.
+  /// The same bits for any number of threads.
   void Step(MppiState& state, ThreadPool& pool) const;
 
-  /// Iterations that find out what a path is worth: what comes after begins with their mean and
-  /// plans, its own iterations counted from 1.
+  /// Iterations that find out what a path is worth, in the scene's own world alone: what comes
+  /// after begins with their mean and plans, its own iterations counted from 1.
   void Screen(MppiState& state, int iterations, ThreadPool& pool) const;
 
   /// Decodes and simulates one action again, e.g. the winner. @param trace  as SimulatePlan's.
@@ -138,8 +141,22 @@ class Mppi {
   };
   std::vector<Judged> Judge(const std::vector<PlanOutcome>& outcomes, ThreadPool* pool) const;
   PlanCost CalcCost(const PlanOutcome& outcome, const Judged& judged, double score_scale) const;
+  // @param elsewhere  try the samples in the other worlds, too.
+  void Iterate(MppiState& state, bool elsewhere, ThreadPool& pool) const;
+  bool is_tried_elsewhere() const {
+    return problem_.others != nullptr && config_.weights.fragility > 0.0;
+  }
+  // CalcFragility in the other worlds.
+  double TryElsewhere(const PlanOutcome& nominal) const;
+  // What screening found, which has been tried in no other world.
+  void TryPlansElsewhere(MppiState& state, ThreadPool& pool) const;
+  // Tries the better half of `samples` in the other worlds; the rest count as most fragile.
+  void AddFragilities(const std::vector<PlanOutcome>& outcomes, double rest_reward,
+                      std::vector<MppiSample>& samples, ThreadPool& pool) const;
   void FixScale(MppiState& state, const std::vector<Judged>& judged) const;
+  static void SetBest(MppiState& state);
   static void Offer(MppiState& state, const MppiSample& sample);
+  static std::vector<MppiPlan>::iterator FindLeastPromising(std::vector<MppiPlan>& plans);
   void CheckEnd(MppiState& state) const;
   void MoveMean(MppiState& state) const;
 

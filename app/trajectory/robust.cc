@@ -8,10 +8,6 @@
 namespace pregrasp {
 namespace {
 
-// From the nominal end (design, section 4).
-constexpr double kMaxShift = 0.02;  // [m]
-constexpr double kMaxTurnDeg = 10.0;
-
 void ScaleFriction(Scene& scene, double factor) {
   for (Body& body : scene.bodies) body.friction *= factor;
 }
@@ -51,6 +47,14 @@ Scene ChangeScene(const Scene& scene, RobustChange change) {
   return changed;
 }
 
+std::vector<World> MakeExtremeWorlds(const Scene& scene, const StepConfig& config) {
+  using enum RobustChange;
+  std::vector<World> worlds;
+  worlds.emplace_back(ChangeScene(ChangeScene(scene, kLighter), kLessFriction), config);
+  worlds.emplace_back(ChangeScene(ChangeScene(scene, kHeavier), kMoreFriction), config);
+  return worlds;
+}
+
 RobustWorlds::RobustWorlds(const Scene& scene, const StepConfig& config) {
   for (int i = 0; i < kNumRobustChanges; ++i) {
     const auto change = static_cast<RobustChange>(i);
@@ -72,8 +76,8 @@ RobustResult RobustWorlds::Test(const EnvironmentDistance& environment, const Wo
     outcome.change = static_cast<RobustChange>(i);
     CalcShift(nominal_end, run.end, &outcome.shift, &outcome.turn_deg);
     PREGRASP_CHECK(std::isfinite(outcome.shift) && std::isfinite(outcome.turn_deg));
-    outcome.held = !run.diverged && StaysInHold(run, config) && outcome.shift <= kMaxShift &&
-                   outcome.turn_deg <= kMaxTurnDeg;
+    outcome.held = !run.diverged && StaysInHold(run, config) && outcome.shift <= kRobustShift &&
+                   outcome.turn_deg <= kRobustTurnDeg;
     result.held += outcome.held;
     result.worst_shift = std::max(result.worst_shift, outcome.shift);
     result.worst_turn_deg = std::max(result.worst_turn_deg, outcome.turn_deg);

@@ -38,6 +38,14 @@ struct RobustResult {
   double worst_turn_deg = 0.0;  ///< [degrees]
 };
 
+/// From the nominal end (design, section 4).
+inline constexpr double kRobustShift = 0.02;  // [m]
+inline constexpr double kRobustTurnDeg = 10.0;
+
+/// The worlds, beside its own, in which a path's plans are tried while they are optimised (design,
+/// section 5): light and slippery, heavy and sticky, each by both factors of RobustChange.
+std::vector<World> MakeExtremeWorlds(const Scene& scene, const StepConfig& config);
+
 /// The changed worlds of one scene, built once. Immutable, safe to share between threads.
 class RobustWorlds {
  public:

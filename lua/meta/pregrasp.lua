@@ -900,6 +900,7 @@ function Optimizer:shot(options) end
 ---@field tip_spacing number penalty: two fingertips overlap
 ---@field hold number penalty: the object moves in the hold
 ---@field haste number penalty: a fingertip that touches is faster than a hand can be
+---@field fragility number penalty: the plan ends elsewhere where friction and mass differ
 ---@field fall number penalty: the object falls out of the scene
 
 ---@class Rollout

@@ -185,17 +185,23 @@ constexpr char kSameAsRun[] = R"lua(
     local o = not done and paths:next():optimize {}
     if o then
       while o:step() do end
-      local certified = {}
+      local certified, most = {}, 0
       for plan = 1, 8 do  -- as many as differ
         local is_one, t
-        if #certified < 4 then is_one, t = pcall(o.certify, o, {}, plan) end
+        if #certified < 4 or most == 0 then is_one, t = pcall(o.certify, o, {}, plan) end
         if not is_one then break end
-        if t.certified then certified[#certified + 1] = { held = t.robust.held, grasps = t:grasps {} } end
+        if t.certified then
+          local grasps = t:grasps {}
+          most = math.max(most, grasps.num_lifting)
+          certified[#certified + 1] = { held = t.robust.held, grasps = grasps }
+        end
       end
-      local first = certified[1]
+      local first
       for _, x in ipairs(certified) do
-        local a, b = x.grasps, first.grasps
-        if a.num_lifting > b.num_lifting or a.num_lifting == b.num_lifting and x.held > first.held then first = x end
+        local a, b = x.grasps, first and first.grasps
+        local enough = 2 * a.num_lifting >= most
+        if enough and (not first or x.held > first.held or
+                       x.held == first.held and a.num_lifting > b.num_lifting) then first = x end
       end
       local best = first and first.grasps:best()
       if best and best.lift.held then
@@ -263,9 +269,10 @@ int CountLifting(const LoadedRun& run, const CertifyFacts* certified) {
   }));
 }
 
-// The main job with the weights that ship, as a user starts it: of the first path's plans the one
-// with most lifting grasps is taken on. A plan with more of them has been tried before, in vain.
-TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
+// The main job with the weights that ship, as a user starts it: of the first path's plans with at
+// least half as many lifting grasps as any, the one that holds in most worlds is taken on. Another
+// that comes before it has been tried before, in vain.
+TEST(MainJobTest, TheRulerIsGraspedByThePlanThatHoldsInMostWorlds) {
   const TestFolder temporary;
   const fs::path& folder = temporary.path();
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
@@ -285,16 +292,24 @@ TEST(MainJobTest, TheRulerIsGraspedByThePlanWithMostLiftingGrasps) {
       return step.stage() == "motion" && run.FindBefore<CertifyFacts>(step) == plan;
     });
   };
-  int certified = 0;
+  std::vector<const CertifyFacts*> plans;
+  int most = 0;
   for (const StepFacts& step : run.steps) {
     const auto* plan = std::get_if<CertifyFacts>(&step.details);
     if (plan == nullptr || !plan->certified || plan->path != taken->path) continue;
-    ++certified;
-    if (plan == taken || has_motion(plan)) continue;
-    EXPECT_LE(CountLifting(run, plan), CountLifting(run, taken)) << step.id;
+    plans.push_back(plan);
+    most = std::max(most, CountLifting(run, plan));
+  }
+  const int certified = static_cast<int>(plans.size());
+  const auto key = [&](const CertifyFacts* plan) {
+    const int lifting = CountLifting(run, plan);
+    return std::tuple(2 * lifting >= most, plan->robust->held, lifting);
+  };
+  for (const CertifyFacts* plan : plans) {
+    if (plan != taken && !has_motion(plan)) EXPECT_LE(key(plan), key(taken)) << plan->plan;
   }
   EXPECT_GE(certified, 2);
-  EXPECT_LE(certified, RunConfig().plans);
+  EXPECT_TRUE(certified <= RunConfig().plans || most == 0);
 
   // The same run as an animation and as a scene of MRPT's; what fits neither is one line.
   const auto show = [&](std::vector<std::string> arguments) {

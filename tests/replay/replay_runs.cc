@@ -1,7 +1,7 @@
 // replay_runs DIR..: run directories in MuJoCo: how far from its end here the push ends there
 // (scene.json, rollout.csv), and this project's verdict on the lift and MuJoCo's (lift.csv); then
 // how many pushes end within 2 cm and 10 degrees, and how many verdicts agree, those within 20 % of
-// a limit counted apart.
+// a limit counted apart. A run that came to neither is said to have none.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -25,8 +25,16 @@ struct Tally {
   void Add(const std::filesystem::path& directory) {
     const Scene scene = LoadScene(directory / "scene.json");
     fmt::print("{}: ", directory.string());
-    AddPush(scene, ReadReplayTable(directory / "rollout.csv", scene));
-    AddLift(scene, ReadReplayTable(directory / "lift.csv", scene));
+    if (std::filesystem::exists(directory / "rollout.csv")) {
+      AddPush(scene, ReadReplayTable(directory / "rollout.csv", scene));
+    } else {
+      fmt::print("no push; ");
+    }
+    if (std::filesystem::exists(directory / "lift.csv")) {
+      AddLift(scene, ReadReplayTable(directory / "lift.csv", scene));
+    } else {
+      fmt::print("no lift\n");
+    }
   }
 
  private:

@@ -92,6 +92,42 @@ TEST_F(PlanCostTest, ATipThatIsTooFastOrTooAbruptForAHandCostsByTheWorseOfBoth) 
   EXPECT_NEAR(cost_at(0.1, 90.0), CostWeights().haste, 1e-12);
 }
 
+TEST(CalcFragilityTest, IsTheMeanOfHowFarAwayOtherWorldsEnd) {
+  WorldState here;
+  here.bodies.resize(1);
+  const auto at = [&](double x, double degrees) {
+    WorldState state = here;
+    state.bodies[0].p_WB.x() += x;
+    state.bodies[0].q_WB = Quaternion(Eigen::AngleAxisd(DegToRad(degrees), Vector3::UnitZ()));
+    return state;
+  };
+  const auto fragility = [&](const std::vector<WorldState>& others) {
+    return CalcFragility(here, others);
+  };
+  EXPECT_EQ(fragility({}), 0.0);
+  EXPECT_NEAR(fragility({at(0, 0), at(0, 0)}), 0.0, 1e-12);
+  EXPECT_NEAR(fragility({at(0.02, 0)}), 0.5, 1e-12);
+  EXPECT_NEAR(fragility({at(0, 10)}), 0.5, 1e-9);
+  EXPECT_NEAR(fragility({at(0.01, 20)}), 1.0, 1e-9);  // the worse of both
+  EXPECT_NEAR(fragility({at(0, 0), at(5, 0)}), 0.5, 1e-12);
+}
+
+TEST_F(PlanCostTest, AFragilePlanLosesOfWhatItGainsAndNoMore) {
+  const double weight = CostWeights().fragility;
+  const auto add = [&](double fragility, double rest_reward) {
+    PlanCost cost = Calc(0.4);
+    const double before = cost.total;
+    AddFragility(cost, fragility, CostWeights(), rest_reward);
+    EXPECT_NEAR(cost.total, before + cost.fragility, 1e-15);
+    return cost;
+  };
+  const double reward = Calc(0.4).reward;
+  EXPECT_EQ(add(0.0, 0.1).fragility, 0.0);
+  EXPECT_NEAR(add(0.5, reward - 0.2).fragility, 0.5 * weight * 0.2, 1e-15);
+  EXPECT_NEAR(add(1.0, reward - 0.2).fragility, weight * 0.2, 1e-15);
+  EXPECT_EQ(add(1.0, reward + 0.2).fragility, 0.0);  // worse than doing nothing as it is
+}
+
 TEST_F(PlanCostTest, OverlapOfATipCostsByItsDepthWithoutAJump) {
   const auto cost_at = [&](double overlap) {
     outcome_.max_tip_overlap = overlap;

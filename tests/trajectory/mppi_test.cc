@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "app/core/error.h"
+#include "app/trajectory/robust.h"
 #include "tests/trajectory/ruler_fixture.h"
 
 namespace pregrasp {
@@ -194,6 +196,49 @@ TEST(MppiTest, ThePlansToChooseFromEndApartBestFirst) {
                   RadToDeg(RotationAngle(a.linear(), b.linear())) >= kSameTurnDeg);
     }
   }
+}
+
+TEST(MppiTest, TheBetterHalfIsTriedInOtherWorldsAndTheRestCountsAsMostFragile) {
+  const RulerProblem ruler;
+  const std::vector<World> others = MakeExtremeWorlds(ruler.scene, ruler.world.config());
+  MppiProblem problem = ruler.Make(2, 2);
+  const MppiState alone = RunIterations(Mppi(problem, QuickConfig()), 1, 1);
+  problem.others = &others;
+  const Mppi mppi(problem, QuickConfig());
+  const MppiState state = RunIterations(mppi, 1, 1);
+  ExpectSameBits(state, RunIterations(mppi, 1, 2));
+
+  const double weight = mppi.config().weights.fragility;
+  const auto loss = [&](const MppiSample& sample) {
+    return weight * std::max(sample.cost.reward - state.rest_reward, 0.0);
+  };
+  std::vector<std::pair<double, int>> order;
+  for (int i = 0; i < std::ssize(alone.samples); ++i) {
+    EXPECT_EQ(alone.samples[i].action, state.samples[i].action);
+    EXPECT_EQ(alone.samples[i].cost.fragility, 0.0);
+    order.emplace_back(alone.samples[i].cost.total, i);
+  }
+  std::sort(order.begin(), order.end());
+  int tried = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const MppiSample& sample = state.samples[order[k].second];
+    EXPECT_NEAR(sample.cost.total, order[k].first + sample.cost.fragility, 1e-12);
+    if (k < order.size() / 2) {
+      std::vector<WorldState> ends;
+      const PlanOutcome nominal = mppi.Simulate(sample.action);
+      for (const World& world : others) {
+        ends.push_back(SimulatePlan(world, ruler.environment, problem.start, nominal.plan,
+                                    mppi.config().timing, Stepper::kKernel)
+                           .end);
+      }
+      const double fragility = CalcFragility(nominal.end, ends);
+      EXPECT_NEAR(sample.cost.fragility, fragility * loss(sample), 1e-12);
+      tried += fragility < 1.0 && loss(sample) > 0.0 ? 1 : 0;
+    } else {
+      EXPECT_NEAR(sample.cost.fragility, loss(sample), 1e-12);
+    }
+  }
+  EXPECT_GE(tried, 1);
 }
 
 TEST(MppiTest, WhatFollowsScreeningBeginsWithItsPlansAndCountsFromOne) {

@@ -29,6 +29,19 @@ TEST(RobustChangeTest, EachWorldHasOneChange) {
   }
 }
 
+TEST(ExtremeWorldsTest, OneIsLightAndSlipperyTheOtherHeavyAndSticky) {
+  const Scene scene = MakeRulerScene();
+  const std::vector<World> worlds = MakeExtremeWorlds(scene, StepConfig());
+  ASSERT_EQ(worlds.size(), 2U);
+  const double mass = scene.object().mass_properties->mass;
+  const auto expect = [&](const World& world, double heavier, double rougher) {
+    EXPECT_DOUBLE_EQ(world.scene().object().mass_properties->mass, mass * heavier);
+    for (const Body& body : world.scene().bodies) EXPECT_DOUBLE_EQ(body.friction, 0.3 * rougher);
+  };
+  expect(worlds[0], 0.7, 0.75);
+  expect(worlds[1], 1.3, 1.25);
+}
+
 class RobustTest : public ::testing::Test {
  protected:
   RobustResult Test(const WorldPlan& plan) {
