@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -81,6 +82,15 @@ std::optional<Vector3> FindView(const std::string& name) {
   throw InputError("--camera", "", "one of " + all, '"' + name + '"');
 }
 
+// A camera that is shared was framed for the picture's shape: a narrower one shows as much from
+// left to right.
+void Widen(double aspect_before, PictureConfig& config) {
+  const double aspect = static_cast<double>(config.width) / config.height;
+  if (!config.camera || aspect >= aspect_before) return;
+  const double tangent = std::tan(0.5 * DegToRad(config.camera->fov_deg));
+  config.camera->fov_deg = RadToDeg(2.0 * std::atan(tangent * aspect_before / aspect));
+}
+
 void ApplyOptions(const ShowOptions& options, PictureConfig& config) {
   if (!options.overlay.empty()) SetOverlays(config, options.overlay);
   if (!options.size.empty()) SetSize(options.size, config);
@@ -119,7 +129,9 @@ int ShowStep(const ShowOptions& options) {
   const LoadedRun run = LoadRun(options.run);
   const StepFacts& step = run.Get(options.step);
   Shot shot = FindShot(run.directory, options.step);
+  const double aspect = static_cast<double>(shot.config.width) / shot.config.height;
   ApplyOptions(options, shot.config);
+  if (shot.shares_camera) Widen(aspect, shot.config);
   PictureDrawer drawer(run.scene, LabelsOf(run));
   if (options.camera == "run") {
     const RunSteps steps(run);
@@ -262,7 +274,8 @@ void AddShow(const Subcommand& app, Action& action) {
       .OneAtATime();
   command.Add("--camera", options->camera,
               "run (one for all key steps), front, back, left, right or top; a picture of a step "
-              "has its own by default");
+              "has by default the one that the run took it by, one for all that nobody named "
+              "another for");
   command.Add("--font-scale", options->font_scale, "Size of all type, 1 is as usual")
       .Within(PictureConfig::kFontScale);
   command.AddFlag("--no-card", options->no_card, "Without title and sentences");

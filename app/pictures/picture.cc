@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "app/core/check.h"
 #include "app/geometry/signed_distance.h"
@@ -114,13 +115,14 @@ PictureMaker::~PictureMaker() = default;
 
 namespace {
 
-MatrixX3 LinkOrigins(const HandModel& model, const HandFacts& hand) {
-  const auto X_WL = CalcLinkPoses(model, hand.configuration());
-  MatrixX3 origins(std::ssize(X_WL), 3);
-  for (int link = 0; link < model.num_links(); ++link) {
-    origins.row(link) = X_WL[link].translation().transpose();
+// Corners of the boxes around the hand's parts.
+MatrixX3 HandCorners(const HandModel& hand, const HandConfiguration& configuration) {
+  const auto X_WL = CalcLinkPoses(hand, configuration);
+  MatrixX3 corners(0, 3);
+  for (const HandShape& shape : ShapesOf(hand)) {
+    Append(corners, TransformPoints(X_WL[shape.link], FocusAround(shape.mesh->V, 0.0, 0.0)));
   }
-  return origins;
+  return corners;
 }
 
 }  // namespace
@@ -334,10 +336,8 @@ MatrixX3 PictureMaker::CalcFocus(const std::vector<const StepFacts*>& shown,
   MatrixX3 focus_U = impl_->start_focus_U;
   for (const StepFacts* step : shown) {
     PictureOverlay overlay = Chosen(MakeOverlay(*step, steps, impl_->hand), config);
-    // Of the hand's motion this step's hand alone, not those before it.
-    if (const auto* frame = std::get_if<FrameFacts>(&step->details)) {
-      overlay.focus_W = LinkOrigins(impl_->hand, frame->hand);
-    }
+    // This step's hand alone, not those before it in its motion.
+    if (overlay.hand) overlay.focus_W = HandCorners(impl_->hand, *overlay.hand);
     // The outermost do: a mesh may have any number of points.
     Append(focus_U,
            FindOutermost(impl_->FindFocus(*step, overlay, config) * impl_->R_UW.transpose()));
@@ -353,6 +353,58 @@ CameraConfig PictureMaker::Frame(const MatrixX3& focus_W, const PictureConfig& c
                           static_cast<double>(config.width) / config.height),
               impl_->R_UW.transpose());
   return {camera.p_WCam, camera.p_WTarget, camera.fov_deg};
+}
+
+namespace {
+
+bool HaveOneShape(const PictureConfig& a, const PictureConfig& b) {
+  return static_cast<std::int64_t>(a.width) * b.height ==
+         static_cast<std::int64_t>(b.width) * a.height;
+}
+
+// Whether the step's object was dropped: its lift failed, or it is far below where it began.
+bool IsDropped(const StepFacts& step, double lowest_z, double start_z) {
+  constexpr double kFar = 0.5;  // [m], below which no hand hangs that takes hold at the start
+  const auto* lift = std::get_if<LiftFacts>(&step.details);
+  return (lift != nullptr && !lift->held) || lowest_z < start_z - kFar;
+}
+
+}  // namespace
+
+void PictureMaker::ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps) const {
+  if (impl_->scene.camera) return;  // which all of them have
+  struct Group {
+    const PictureConfig* shape;
+    std::vector<std::pair<StepPicture*, MatrixX3>> members;
+  };
+  std::vector<Group> groups;
+  for (StepPicture& picture : pictures) {
+    if (picture.config.camera) continue;
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& each) {
+      return HaveOneShape(*each.shape, picture.config);
+    });
+    if (group == groups.end()) group = groups.insert(group, Group{&picture.config, {}});
+    group->members.emplace_back(&picture, CalcFocus({picture.step}, steps, picture.config));
+  }
+  const double start_z = impl_->start_focus_U.col(2).minCoeff();
+  for (Group& group : groups) {
+    MatrixX3 focus_W = impl_->start_focus_U * impl_->R_UW;
+    std::vector<bool> dropped;
+    for (const auto& [picture, seen_W] : group.members) {
+      const double lowest_z = (seen_W * impl_->up_W).minCoeff();
+      dropped.push_back(IsDropped(*picture->step, lowest_z, start_z));
+      if (!dropped.back()) Append(focus_W, seen_W);
+    }
+    const CameraConfig camera = Frame(focus_W, *group.shape);
+    const double aspect = static_cast<double>(group.shape->width) / group.shape->height;
+    const RenderCamera camera_U =
+        Rotated({camera.p_WCam, camera.p_WTarget, camera.fov_deg}, impl_->R_UW);
+    for (std::size_t i = 0; i < group.members.size(); ++i) {
+      const auto& [picture, seen_W] = group.members[i];
+      const MatrixX3 seen_U = seen_W * impl_->R_UW.transpose();
+      if (!dropped[i] || IsInSight(camera_U, seen_U, aspect, 0.0)) picture->config.camera = camera;
+    }
+  }
 }
 
 }  // namespace pregrasp

@@ -60,6 +60,12 @@ struct PictureText {
   std::string footer;
 };
 
+/// A picture that is to be made of a step.
+struct StepPicture {
+  const StepFacts* step = nullptr;
+  PictureConfig config;
+};
+
 /// Turns steps of one scene into pictures' contents: a function of the step's facts, of the steps
 /// before it and of the scene. Holds the meshes, which pictures share.
 class PictureMaker {
@@ -80,6 +86,12 @@ class PictureMaker {
   /// given. @param view  towards the camera, z against gravity; unset takes the automatic one.
   CameraConfig Frame(const MatrixX3& focus_W, const PictureConfig& config,
                      const std::optional<Vector3>& view = std::nullopt) const;
+
+  /// Gives those of these pictures that have no camera one: of all that are as wide for their
+  /// height the same, framed over all their steps. What was dropped, by a lift that failed or far
+  /// below everything else, frames nothing, and keeps an automatic camera of its own where that one
+  /// does not show it.
+  void ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps) const;
 
  private:
   struct Impl;

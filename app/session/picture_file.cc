@@ -114,6 +114,7 @@ nlohmann::ordered_json ShotToJson(const Shot& shot) {
   for (const OverlayFlag& word : kWords) {
     if (!(shot.config.*word.flag)) json["without"].push_back(word.name);
   }
+  if (shot.shares_camera) json["shares_camera"] = true;
   if (shot.config.font_scale != 1.0) json["font_scale"] = shot.config.font_scale;
   return json;
 }
@@ -139,6 +140,7 @@ Shot ShotFromJson(const nlohmann::json& value, const std::string& where) {
       }
     }
   }
+  shot.shares_camera = value.contains("shares_camera") && reader["shares_camera"].Bool();
   if (value.contains("font_scale")) shot.config.font_scale = reader["font_scale"].Number();
   if (const JsonReader camera = reader["camera"]; !camera.is_null()) {
     shot.config.camera = CameraConfig{camera["p_WCam"].Vec3(), camera["p_WTarget"].Vec3(),
@@ -206,6 +208,10 @@ CameraConfig PictureDrawer::FrameSteps(const std::vector<const StepFacts*>& show
                                        const FactsSource& steps, const PictureConfig& config,
                                        const std::optional<Vector3>& view) {
   return Frame(CalcFocus(shown, steps, config), config, view);
+}
+
+void PictureDrawer::ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps) {
+  Maker().ShareCamera(pictures, steps);
 }
 
 void PictureDrawer::Draw(const StepFacts& step, const FactsSource& steps, const Shot& shot,

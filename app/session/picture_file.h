@@ -22,8 +22,9 @@ PictureMode ParsePictureMode(const std::string& text, const std::string& where,
 /// A picture that is asked for.
 struct Shot {
   PictureConfig config;
-  std::string caption;  ///< in place of the step's sentences, unless empty
-  std::string title;    ///< in place of the step's id, unless empty
+  std::string caption;         ///< in place of the step's sentences, unless empty
+  std::string title;           ///< in place of the step's id, unless empty
+  bool shares_camera = false;  ///< with the run's other pictures: nobody named one
 };
 /// An object of pictures.jsonl (app/recording/README.md), and back. @throws InputError.
 nlohmann::ordered_json ShotToJson(const Shot& shot);
@@ -67,6 +68,9 @@ class PictureDrawer {
   CameraConfig FrameSteps(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
                           const PictureConfig& config,
                           const std::optional<Vector3>& view = std::nullopt);
+
+  /// PictureMaker::ShareCamera.
+  void ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps);
 
   const Scene& scene() const { return scene_; }
 

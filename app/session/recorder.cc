@@ -1,7 +1,8 @@
 #include "app/session/recorder.h"
 
-#include <algorithm>
 #include <chrono>
+#include <utility>
+#include <vector>
 
 #include "app/core/check.h"
 #include "app/core/interrupt.h"
@@ -56,29 +57,41 @@ void Recorder::Draw(const Timeline::Node& node, const Shot& shot) {
 }
 
 void Recorder::DrawPending() {
-  for (; !pending_.empty(); pending_.pop_front()) {
-    const Timeline::Node& node = *pending_.front();
-    const bool wanted = pictures_ == PictureMode::kAll ||
-                        (pictures_ == PictureMode::kKey && IsKeyStep(node.facts, timeline_));
-    if (wanted) Draw(node, Shot{});
+  std::vector<std::pair<const Timeline::Node*, Shot>> wanted;
+  std::vector<StepPicture> pictures;
+  for (const auto& [number, waiting] : pending_) {
+    const Timeline::Node& node = *timeline_.nodes()[static_cast<std::size_t>(number) - 1];
+    if (!waiting.asked && pictures_ != PictureMode::kAll && !IsKeyStep(node.facts, timeline_)) {
+      continue;
+    }
+    wanted.emplace_back(&node, waiting.shot);
+    pictures.push_back({&node.facts, waiting.shot.config});
   }
+  if (!wanted.empty()) drawer_.ShareCamera(pictures, timeline_);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    ThrowIfInterrupted();
+    auto& [node, shot] = wanted[i];
+    shot.shares_camera = pictures[i].config.camera.has_value();
+    shot.config = pictures[i].config;
+    Draw(*node, shot);
+  }
+  pending_.clear();
 }
 
 void Recorder::Add(const Timeline::Node& node) {
-  try {
-    DrawPending();
-  } catch (const Interrupted&) {
-    // Whoever works on polls too, and must find the node written.
-  }
   const int number = run_.AddStep(node.facts);
   PREGRASP_CHECK(number == node.number, number, node.number);
-  pending_.push_back(&node);
+  if (pictures_ != PictureMode::kNone) pending_[number] = {};
 }
 
 void Recorder::Shoot(const Timeline::Node& node, const Shot& shot) {
   if (pictures_ == PictureMode::kNone) return;
-  Draw(node, shot);
-  pending_.erase(std::remove(pending_.begin(), pending_.end(), &node), pending_.end());
+  if (shot.config.camera) {
+    Draw(node, shot);
+    pending_.erase(node.number);
+  } else {
+    pending_[node.number] = {shot, true};
+  }
 }
 
 void Recorder::WriteTables(const Timeline::Node& node) {

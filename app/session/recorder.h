@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -19,15 +18,16 @@ class Recorder {
   Recorder(const std::filesystem::path& directory, const Timeline& timeline, PictureMode pictures,
            PictureDrawer& drawer, RunInfo info);
 
-  /// Writes the next node. Its own picture waits until the next one comes: another may be asked
-  /// for. An interrupt leaves pictures for DrawPending: every node gets written.
+  /// Writes the next node. Its own picture waits for DrawPending: only when all steps are there is
+  /// it known what one camera has to show.
   void Add(const Timeline::Node& node);
-  /// A picture of a node that was added; of several of one node the last stays. @throws
-  /// Interrupted, without it.
+  /// A picture of a node that was added; of several of one node the last stays. One with a camera
+  /// is drawn now, others wait. @throws Interrupted, without it.
   void Shoot(const Timeline::Node& node, const Shot& shot);
 
-  /// Draws what waits; to be called before Finish, so that the summary's seconds count it.
-  /// @throws Interrupted, after which the rest still waits.
+  /// Draws what waits, by one camera (PictureMaker::ShareCamera); to be called before Finish, so
+  /// that the summary's seconds count it. @throws Interrupted, after which all still waits: with
+  /// more steps it may be another camera.
   void DrawPending();
   /// Does without the pictures that wait.
   void DropPending() { pending_.clear(); }
@@ -38,6 +38,11 @@ class Recorder {
   void SetError(std::string error) { run_.SetError(std::move(error)); }
 
  private:
+  struct Pending {
+    Shot shot;
+    bool asked = false;  // else of the node's own picture, which the mode may leave out
+  };
+
   void Draw(const Timeline::Node& node, const Shot& shot);
   void WriteTables(const Timeline::Node& node);
 
@@ -45,7 +50,7 @@ class Recorder {
   const Timeline& timeline_;
   PictureMode pictures_;
   PictureDrawer& drawer_;
-  std::deque<const Timeline::Node*> pending_;    // whose own pictures are not drawn yet
+  std::map<int, Pending> pending_;               // pictures that wait, by the step's number
   std::map<int, nlohmann::ordered_json> drawn_;  // pictures, by the step's number
   double picture_seconds_ = 0.0;
 };

@@ -156,6 +156,8 @@ void Session::FinishRecording(const std::optional<std::string>& status, const No
                               const std::string& error) {
   if (!recorder_) return;
   if (!status) CompleteVerdict();
+  // Whoever ends the program kills it soon; after Ctrl-C there is time, or a second one.
+  if (status && TerminationRequested()) recorder_->DropPending();
   try {
     recorder_->DrawPending();
   } catch (const Interrupted&) {

@@ -327,7 +327,8 @@ function Session:simulate(options) end
 ---@field trace? boolean every step tells its energies too: in `trace`, log and pictures, all in trace.jsonl; false
 
 ---From now on every step goes to a run directory: its log pair, and pictures of the start and of each
----shot{} ("key"), of every step ("all"), or none. It is finished by save(), or at the script's end.
+---shot{} ("key"), of every step ("all"), or none. It is finished by save(), or at the script's end:
+---then pictures without a camera are drawn, all by one that shows what each of them has to.
 ---@param options RecordOptions
 function Session:record(options) end
 
@@ -377,7 +378,7 @@ function Session:shot(options) end
 
 ---@class ShotOptions the first entry, if there is one, is the picture's title
 ---@field caption? string in place of what happened and why
----@field camera? CameraTable
+---@field camera? CameraTable else, in a run directory, one that its pictures share; in a file the picture's own
 ---@field size? integer[] {1280, 720} pixels
 ---@field quality? "draft"|"normal"|"still" "still"
 ---@field overlay? Overlay[] all of them

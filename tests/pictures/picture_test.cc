@@ -146,6 +146,43 @@ TEST_F(PictureMakerTest, OneCameraHasTheObjectInSightInAllStepsThatItIsFramedFor
   }
 }
 
+TEST_F(PictureMakerTest, PicturesOfOneShapeShareACameraThatShowsAllStepsButWhatWasDropped) {
+  const auto step_at = [&](double x, double z) {
+    StepFacts step = timeline_.root().facts;
+    step.bodies[0].p_WB += Vector3(x, 0.0, z);
+    return step;
+  };
+  const StepFacts start = step_at(0.0, 0.0), far = step_at(0.5, 0.0), fallen = step_at(0.1, -5.0);
+  StepFacts slipped = step_at(-2.0, 0.0), near = start;
+  LiftFacts lift;
+  lift.held = false;
+  slipped.details = near.details = lift;
+  PictureConfig wide, small, square, named;
+  small.width = 640;
+  small.height = 360;
+  square.width = square.height = 500;
+  named.camera = CameraConfig{{1, 2, 3}, {0, 0, 0}, 40.0};
+  std::vector<StepPicture> pictures = {{&start, wide},   {&far, small}, {&fallen, wide},
+                                       {&slipped, wide}, {&near, wide}, {&start, named},
+                                       {&start, square}, {&far, square}};
+  maker_.ShareCamera(pictures, timeline_);
+  const auto camera = [&](std::size_t i) { return pictures[i].config.camera.value(); };
+  EXPECT_EQ(camera(1).p_WCam, camera(0).p_WCam);
+  EXPECT_EQ(camera(4).p_WCam, camera(0).p_WCam);
+  EXPECT_FALSE(pictures[2].config.camera || pictures[3].config.camera);
+  EXPECT_EQ(camera(5).p_WCam, named.camera->p_WCam);
+  EXPECT_EQ(camera(6).p_WCam, camera(7).p_WCam);
+  EXPECT_NE(camera(6).p_WCam, camera(0).p_WCam);
+  for (const std::size_t i : {0U, 1U, 6U, 7U}) {
+    const double x = pictures[i].step->bodies[0].p_WB.x();
+    MatrixX3 ends(2, 3);
+    ends << x - 0.15, 0, 0, x + 0.15, 0, 0;
+    EXPECT_TRUE(IsInSight({camera(i).p_WCam, camera(i).p_WTarget, camera(i).fov_deg}, ends,
+                          i < 6 ? 16.0 / 9.0 : 1.0, 0.0))
+        << i;
+  }
+}
+
 TEST(FindOutermostTest, TakesCornersAndNothingFromWithin) {
   MatrixX3 cube_and_more(10, 3);
   for (int i = 0; i < 8; ++i) cube_and_more.row(i) << i % 2, i / 2 % 2, i / 4;

@@ -144,6 +144,32 @@ TEST_F(SessionTest, EveryPictureOfARunIsDrawnAgainFromItsFilesWithTheSamePixels)
   EXPECT_EQ(count, 3);
 }
 
+TEST_F(SessionTest, PicturesOfARunShareOneCameraUnlessOneIsNamed) {
+  Session session(MakeRulerScene(), {});
+  session.Record(folder_ / "run", PictureMode::kAll);
+  const Node& pulled = Move(session, Pull(session), {0.12, 0, 0}, 1.0);
+  session.Shoot(*pulled.parent, Draft("asked for"));
+  Shot named = Draft("by another camera");
+  named.config.camera = CameraConfig{{0.3, -0.5, 0.3}, {-0.1, 0, 0}, 40.0};
+  session.Shoot(*pulled.parent->parent->parent, named);
+  session.Save(std::nullopt);
+  const LoadedRun run = LoadRun(folder_ / "run");
+  PictureDrawer drawer(run.scene, {});
+  std::vector<const StepFacts*> sharing;
+  for (const char* id : {"scene.start", "sim.2", "sim.3", "sim.4"}) sharing.push_back(&run.Get(id));
+  const CameraConfig camera = drawer.FrameSteps(sharing, run, {});
+  EXPECT_NE(drawer.FrameSteps({sharing[0]}, run, {}).p_WCam, camera.p_WCam);
+  for (const StepFacts* step : sharing) {
+    const Shot shot = FindShot(run.directory, step->id);
+    EXPECT_TRUE(shot.shares_camera) << step->id;
+    EXPECT_EQ(shot.config.camera.value().p_WCam, camera.p_WCam) << step->id;
+    EXPECT_EQ(shot.config.camera.value().fov_deg, camera.fov_deg) << step->id;
+  }
+  const Shot other = FindShot(run.directory, "sim.1");
+  EXPECT_FALSE(other.shares_camera);
+  EXPECT_EQ(other.config.camera.value().p_WCam, named.config.camera->p_WCam);
+}
+
 TEST_F(SessionTest, TheSummaryHoldsTheDeepestOverlapOfAllPhysicsSteps) {
   Session session(MakeRulerScene(), {});
   const Node& pulled = Pull(session);
