@@ -9,6 +9,7 @@
 
 #include "app/core/text.h"
 #include "render/caption_card.h"
+#include "render/footer.h"
 #include "render/label_layout.h"
 #include "render/overlay_style.h"
 
@@ -98,7 +99,10 @@ class Overlay {
   void Draw(double grid_spacing) {
     const RenderCaption& caption = scene_.caption;
     const bool bar = !caption.footer.empty() || caption.progress >= 0.0;
-    const double footer_height = bar ? std::round(style_.small + style_.px(17.0)) : 0.0;
+    const FooterText words_below =
+        LayOutFooter(fonts_, style_, caption.footer, FooterNote(0, grid_spacing),
+                     {canvas_.width(), canvas_.height()});
+    const double footer_height = bar ? words_below.height : 0.0;
     const double bottom = canvas_.height() - footer_height;
     const Rect footer{0.0, bottom, canvas_.width(), footer_height};
     std::vector<Rect> obstacles = {footer};
@@ -114,7 +118,7 @@ class Overlay {
       obstacles.push_back(*card);
     }
     const int left_out = DrawLabels(std::move(obstacles));
-    DrawFooter(footer, FooterNote(left_out, grid_spacing));
+    DrawFooter(words_below, footer, left_out, grid_spacing);
   }
 
  private:
@@ -197,13 +201,23 @@ class Overlay {
     return note;
   }
 
-  void DrawFooter(const Rect& footer, const std::string& note) {
+  void DrawFooter(const FooterText& text, const Rect& footer, int labels_left_out,
+                  double grid_spacing) {
     const double pad = style_.px(16.0);
-    const double note_width = fonts_.TextWidth(FontFace::kSans, style_.small, note);
-    const double note_x = canvas_.width() - pad - note_width;
+    // Where both have no room it says what is missing, and the grid is seen anyway.
+    const auto draw_note = [&](double baseline, const Rgba& color, double room) {
+      const auto width = [&](const std::string& note) {
+        return static_cast<double>(fonts_.TextWidth(FontFace::kSans, text.size, note));
+      };
+      std::string note = FooterNote(labels_left_out, grid_spacing);
+      if (width(note) > room && labels_left_out > 0) note = FooterNote(labels_left_out, 0.0);
+      note = FitText(fonts_, FontFace::kSans, text.size, note, room);
+      canvas_.DrawText(FontFace::kSans, text.size, {canvas_.width() - pad - width(note), baseline},
+                       note, color);
+    };
+    const double whole = canvas_.width() - 2.0 * pad;
     if (footer.height == 0.0) {
-      canvas_.DrawText(FontFace::kSans, style_.small, {note_x, canvas_.height() - style_.px(10.0)},
-                       note, style_.on_floor);
+      draw_note(canvas_.height() - style_.px(10.0), style_.on_floor, whole);
       return;
     }
     canvas_.FillRect(footer, style_.panel);
@@ -212,13 +226,17 @@ class Overlay {
       const double share = std::min(scene_.caption.progress, 1.0);
       canvas_.FillRect({0.0, footer.y, share * footer.width, line}, style_.accent);
     }
-    const double cap = fonts_.CapHeight(FontFace::kMono, style_.small);
-    const double baseline = footer.y + 0.5 * (footer.height + line + cap) - 1.0;
-    canvas_.DrawText(FontFace::kSans, style_.small, {note_x, baseline}, note, style_.muted);
-    canvas_.DrawText(
-        FontFace::kMono, style_.small, {pad, baseline},
-        FitText(fonts_, FontFace::kMono, style_.small, scene_.caption.footer, note_x - 2.0 * pad),
-        style_.normal);
+    const double cap = fonts_.CapHeight(FontFace::kMono, text.size);
+    const double first = footer.height - (text.lines.size() - 1.0) * text.line_height;
+    double baseline = footer.y + 0.5 * (first + line + cap) - 1.0;
+    for (std::size_t i = 0; i < text.lines.size(); ++i) {
+      if (i == text.note_line) {
+        const double taken = fonts_.TextWidth(FontFace::kMono, text.size, text.lines[i]);
+        draw_note(baseline, style_.muted, whole - (taken > 0.0 ? taken + pad : 0.0));
+      }
+      canvas_.DrawText(FontFace::kMono, text.size, {pad, baseline}, text.lines[i], style_.normal);
+      baseline += text.line_height;
+    }
   }
 
   double Width(const std::string& text) {

@@ -3,6 +3,7 @@
 #include "render/canvas.h"
 #include "render/caption_card.h"
 #include "render/font.h"
+#include "render/footer.h"
 #include "render/palette.h"
 
 namespace pregrasp {
@@ -44,6 +45,50 @@ TEST(FontTest, MonospaceHasOneWidth) {
   FontSet fonts;
   EXPECT_FLOAT_EQ(fonts.TextWidth(FontFace::kMono, 14.0F, "iiii"),
                   fonts.TextWidth(FontFace::kMono, 14.0F, "W\u03bb\u2192\u00b0"));
+}
+
+TEST(FooterTest, NothingOfACommandIsCutAtAnyWidthOrSizeOfType) {
+  FontSet fonts;
+  const std::string note = "12 labels have no room   grid 10 cm and 1 m",
+                    before =
+                        "scenes/ruler.lua \u00b7 seed 3 \u00b7 path.2.lift.15~5 \u00b7 t = 5.500 s",
+                    command = "again: pregrasp run scenes/ruler.lua --seed 3";
+  const std::string folder(150, 'w');
+  const auto letters = [](std::string text) {
+    for (const std::string left_out : {" ", "\u00b7"}) {
+      for (std::size_t at; (at = text.find(left_out)) != std::string::npos;) {
+        text.erase(at, left_out.size());
+      }
+    }
+    return text;
+  };
+  for (const auto& [width, height] : {std::pair(1280, 720), {640, 360}, {480, 270}}) {
+    const Image image{width, height, {}};
+    for (const double font_scale : {1.0, 2.0, 4.0}) {
+      const OverlayStyle style(image, font_scale);
+      for (const std::string& more : {std::string(), " --out " + folder}) {
+        const std::string text = before + " \u00b7 " + command + more;
+        const FooterText footer = LayOutFooter(fonts, style, text, note, {width, height});
+        std::string shown;
+        for (const std::string& line : footer.lines) {
+          shown += line;
+          EXPECT_LE(fonts.TextWidth(FontFace::kMono, footer.size, line), width - 2 * style.px(16))
+              << line;
+        }
+        EXPECT_EQ(letters(shown), letters(text)) << width << " " << font_scale;
+        EXPECT_LE(footer.height, 0.5 * height + 1.0);
+        ASSERT_LT(footer.note_line, footer.lines.size());
+      }
+    }
+  }
+  const auto lines = [&](int width, int height) {
+    const OverlayStyle style(Image{width, height, {}}, 1.0);
+    return LayOutFooter(fonts, style, before + " \u00b7 " + command, note, {width, height}).lines;
+  };
+  EXPECT_EQ(lines(1600, 900).size(), 1U);
+  ASSERT_GE(lines(640, 360).size(), 2U);
+  EXPECT_EQ(lines(640, 360)[0], before);
+  EXPECT_EQ(lines(640, 360)[1], command);  // whole, on a line of its own
 }
 
 TEST(CaptionTest, TheCardStaysAtTheUpperLeftUnlessAnotherCornerHidesClearlyLess) {
