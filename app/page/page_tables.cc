@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "app/job/planner_settings.h"
 #include "app/page/cost_plot.h"
@@ -103,10 +104,29 @@ struct Tried {
     return all;
   }
 
-  std::string Paths() const {
+  // A folded table of all steps of a kind, a row each: its mark, its id, and its cells.
+  template <typename Facts, typename Cells>
+  std::string Table(Verb verb, const char* what, const std::vector<std::string>& columns,
+                    const Cells& cells) const {
     std::vector<std::vector<std::string>> rows;
-    for (const StepFacts* step : All<PathFacts>(Verb::kPath)) {
-      const auto& path = std::get<PathFacts>(step->details);
+    for (const StepFacts* step : All<Facts>(verb)) {
+      rows.push_back({Mark(*step), StepLink(run, step->id)});
+      for (std::string& cell : cells(std::get<Facts>(step->details))) {
+        rows.back().push_back(std::move(cell));
+      }
+    }
+    if (rows.empty()) return "";
+    std::vector<std::string> heads = {"", "step"};
+    heads.insert(heads.end(), columns.begin(), columns.end());
+    return fmt::format("<details{}><summary>{} {}</summary>\n{}</details>\n",
+                       rows.size() <= 8 ? " open" : "", rows.size(), what,
+                       HtmlTable("", heads, rows));
+  }
+
+  using Cells = std::vector<std::string>;
+
+  std::string Paths() const {
+    const auto cells = [this](const PathFacts& path) {
       const ScreenFacts* screen = nullptr;
       const IterationFacts* last = nullptr;
       for (const StepFacts& later : run.steps) {
@@ -119,67 +139,48 @@ struct Tried {
         nodes += fmt::format("{}thumb {}, index {}", nodes.empty() ? "" : "; then ", node.thumb,
                              node.index);
       }
-      rows.push_back(
-          {Mark(*step), StepLink(run, step->id), fmt::format("{:.3f}", path.score), nodes,
-           screen == nullptr ? ""
-                             : fmt::format("{:.3f} (doing nothing {:.3f}), round {}", screen->value,
-                                           screen->rest_reward, screen->round),
-           last == nullptr ? "" : fmt::format("{:.3f}", last->best_cost)});
-    }
-    if (rows.empty()) return "";
-    return Fold(
-        rows.size(), "paths",
-        HtmlTable("", {"", "step", "score", "triangles", "worth in screening", "best cost"}, rows));
+      return Cells{fmt::format("{:.3f}", path.score), nodes,
+                   screen == nullptr
+                       ? ""
+                       : fmt::format("{:.3f} (doing nothing {:.3f}), round {}", screen->value,
+                                     screen->rest_reward, screen->round),
+                   last == nullptr ? "" : fmt::format("{:.3f}", last->best_cost)};
+    };
+    return Table<PathFacts>(Verb::kPath, "paths",
+                            {"score", "triangles", "worth in screening", "best cost"}, cells);
   }
 
   std::string Certificates() const {
-    std::vector<std::vector<std::string>> rows;
-    for (const StepFacts* step : All<CertifyFacts>(Verb::kCertify)) {
-      const auto& facts = std::get<CertifyFacts>(step->details);
-      rows.push_back({Mark(*step), StepLink(run, step->id), std::to_string(facts.path),
-                      std::to_string(facts.plan), YesNo(facts.certified),
-                      EscapeHtml(Join(facts.reasons)), fmt::format("{:.2f} N", facts.max_force_N)});
-    }
-    if (rows.empty()) return "";
-    return Fold(
-        rows.size(), "plans simulated for a certificate",
-        HtmlTable("", {"", "step", "path", "plan", "certified", "why not", "largest force"}, rows));
+    return Table<CertifyFacts>(
+        Verb::kCertify, "plans simulated for a certificate",
+        {"path", "plan", "certified", "why not", "largest force"}, [](const CertifyFacts& facts) {
+          return Cells{std::to_string(facts.path), std::to_string(facts.plan),
+                       YesNo(facts.certified), EscapeHtml(Join(facts.reasons)),
+                       fmt::format("{:.2f} N", facts.max_force_N)};
+        });
   }
 
   std::string Grasps() const {
-    std::vector<std::vector<std::string>> rows;
-    for (const StepFacts* step : All<GraspFacts>(Verb::kGrasp)) {
-      const auto& facts = std::get<GraspFacts>(step->details);
-      rows.push_back({Mark(*step), StepLink(run, step->id),
-                      EscapeHtml(fmt::format("{} {}", facts.source, facts.number)),
-                      YesNo(facts.feasible), EscapeHtml(facts.sentence),
-                      facts.margin ? fmt::format("{:.3f}", *facts.margin) : ""});
-    }
-    if (rows.empty()) return "";
-    return Fold(rows.size(), "grasps tested",
-                HtmlTable("", {"", "step", "from", "feasible", "why", "margin"}, rows));
+    return Table<GraspFacts>(Verb::kGrasp, "grasps tested", {"from", "feasible", "why", "margin"},
+                             [](const GraspFacts& facts) {
+                               return Cells{
+                                   EscapeHtml(fmt::format("{} {}", facts.source, facts.number)),
+                                   YesNo(facts.feasible), EscapeHtml(facts.sentence),
+                                   facts.margin ? fmt::format("{:.3f}", *facts.margin) : ""};
+                             });
   }
 
   std::string Lifts() const {
-    std::vector<std::vector<std::string>> rows;
-    for (const StepFacts* step : All<LiftFacts>(Verb::kLift)) {
-      const auto& facts = std::get<LiftFacts>(step->details);
-      rows.push_back({Mark(*step), StepLink(run, step->id), std::to_string(facts.grasp),
-                      YesNo(facts.held), EscapeHtml(facts.sentence),
-                      fmt::format("{:.1f} mm", 1e3 * facts.height_m),
-                      fmt::format("{:.1f} mm", facts.slip_mm),
-                      facts.held ? fmt::format("{} of 6", facts.pushes) : ""});
-    }
-    if (rows.empty()) return "";
-    return Fold(
-        rows.size(), "lifts simulated",
-        HtmlTable("", {"", "step", "grasp", "held", "why", "came", "fingers slid", "pushes"},
-                  rows));
-  }
-
-  static std::string Fold(std::size_t count, const char* what, const std::string& table) {
-    return fmt::format("<details{}><summary>{} {}</summary>\n{}</details>\n",
-                       count <= 8 ? " open" : "", count, what, table);
+    return Table<LiftFacts>(Verb::kLift, "lifts simulated",
+                            {"grasp", "held", "why", "came", "fingers slid", "pushes"},
+                            [](const LiftFacts& facts) {
+                              return Cells{std::to_string(facts.grasp),
+                                           YesNo(facts.held),
+                                           EscapeHtml(facts.sentence),
+                                           fmt::format("{:.1f} mm", 1e3 * facts.height_m),
+                                           fmt::format("{:.1f} mm", facts.slip_mm),
+                                           facts.held ? fmt::format("{} of 6", facts.pushes) : ""};
+                            });
   }
 };
 
