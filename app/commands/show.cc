@@ -204,9 +204,10 @@ int Show(ShowOptions options) {
   options.steps = SplitSteps(options.steps);
   const std::filesystem::path out = options.out;
   RequireOutsideRuns(out);
-  if (IsFinishedRun(options.run)) {
-    if (const auto mismatch = VerifyManifest(options.run)) {
-      fmt::print(stderr, "{}: warning: {}\n", options.run, mismatch->Sentence());
+  for (const std::string& run : {options.run, options.against}) {
+    if (run.empty() || !IsFinishedRun(run)) continue;
+    if (const auto mismatch = VerifyManifest(run)) {
+      fmt::print(stderr, "{}: warning: {}\n", run, mismatch->Sentence());
     }
   }
   const std::string kind = out.extension().string();

@@ -228,13 +228,22 @@ TEST_F(VerifyCommandTest, TwoRunsOfOneSeedAreShownSideBySide) {
 // Files that were changed are shown with a warning; whoever follows a step's parents comes to an
 // end, whatever the file says.
 TEST_F(VerifyCommandTest, ChangedRunsAreWarnedOfAndStepsThatGoRoundInACircleRefused) {
-  const fs::path run = MakeFailingRun("circle");
+  const fs::path run = MakeFailingRun("circle"), intact = folder_ / "intact";
+  fs::copy(run, intact, fs::copy_options::recursive | fs::copy_options::copy_symlinks);
   WriteFile(run / "run.rawlog", ReadFile(run / "run.rawlog") + "more");
   const ProgramResult changed = RunProgram(
       {"show", run.string(), "--step", "scene.start", "--out", (folder_ / "a.png").string()},
       folder_);
   EXPECT_EQ(changed.code, 0);
   EXPECT_EQ(changed.err, run.string() + ": warning: run.rawlog was changed\n");
+  for (const auto& [left, right] : {std::pair(run, intact), std::pair(intact, run)}) {
+    const ProgramResult pair =
+        RunProgram({"show", left.string(), "--against", right.string(), "--steps", "scene.start",
+                    "--out", (folder_ / "pair.png").string()},
+                   folder_);
+    EXPECT_EQ(pair.code, 0);
+    EXPECT_EQ(pair.err, changed.err);
+  }
   const std::string steps = ReadFile(run / "steps.jsonl");
   const std::regex node("\"node\":\"[^\"]+\"");
   for (const std::string& id : {std::string("graph.score"), LoadRun(run).steps.back().id}) {
