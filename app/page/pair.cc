@@ -10,6 +10,7 @@
 #include "app/job/facts_json.h"
 #include "app/page/run_steps.h"
 #include "app/pictures/reasons.h"
+#include "app/pictures/words.h"
 #include "app/recording/run_comparison.h"
 
 namespace pregrasp {
@@ -131,8 +132,10 @@ FirstDifference FindFirstDifference(const LoadedRun& left, const LoadedRun& righ
   RunComparison comparison(0.0);
   comparison.CompareRuns(left.directory, right.directory);
   if (!comparison.first()) return {"Every step and every file the same.", nullptr, nullptr};
-  FirstDifference difference{
-      "The first difference: " + comparison.first()->Sentence("A", "B") + ".", nullptr, nullptr};
+  RunDifference first = *comparison.first();
+  first.value.field = DescribeField(first.value.field);
+  FirstDifference difference{"The first difference: " + first.Sentence("A", "B") + ".", nullptr,
+                             nullptr};
   // Steps are compared line by line, and named by the right one's id; where one run has more, the
   // first of these.
   const std::string& place = comparison.first()->place;
@@ -145,6 +148,15 @@ FirstDifference FindFirstDifference(const LoadedRun& left, const LoadedRun& righ
   }
   if (i < left.steps.size()) difference.left = &left.steps[i];
   if (i < right.steps.size()) difference.right = &right.steps[i];
+  if (difference.left == nullptr || difference.right == nullptr) return difference;
+  // What their cards have of it, in the same words.
+  constexpr std::size_t kMost = 4;
+  const std::string rows =
+      DescribeRowDifferences(DescribeStep(left.scene, *difference.left, left),
+                             DescribeStep(right.scene, *difference.right, right), kMost);
+  if (!rows.empty()) {
+    difference.text = fmt::format("The first step that differs, {}, has {}.", place, rows);
+  }
   return difference;
 }
 

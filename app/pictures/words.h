@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,15 @@ std::string FormatMillimetres(const Vector3& v);
 /// ("index force\t0.56 N").
 std::vector<std::string> DescribeStep(const Scene& scene, const StepFacts& step,
                                       const FactsSource& steps);
+
+/// Where two steps' sentences and rows (DescribeStep) have rows of one name with other values,
+/// these as "best cost: A -1.405, B -1.381; .."; at most `most` of them, "" for none.
+std::string DescribeRowDifferences(const std::vector<std::string>& left,
+                                   const std::vector<std::string>& right, std::size_t most);
+
+/// A field of a step as cards and tables name it, with its unit: "details.max_force_N" is "largest
+/// force [N]". The field itself where they have no words for it.
+std::string DescribeField(const std::string& field);
 
 /// Why a node is in the graph or not, in one sentence.
 std::string DescribeReason(const NodeReason& reason);

@@ -116,9 +116,18 @@ TEST_F(StripTest, TwoRunsFirstDifferWhereDiffSaysAndThereTheyAreFramed) {
   const FirstDifference difference = FindFirstDifference(run, other);
   EXPECT_EQ(difference.left, &run.Get("sim.2"));
   EXPECT_EQ(difference.right, &other.Get("sim.2"));
-  RunComparison comparison;
-  comparison.CompareRuns(run.directory, other.directory);
-  EXPECT_NE(difference.text.find(comparison.first()->Sentence("A", "B")), std::string::npos);
+  // In the words of the card, with its units.
+  EXPECT_EQ(difference.text.rfind("The first step that differs, sim.2, has ", 0), 0U)
+      << difference.text;
+  const auto rows = [](const LoadedRun& of) { return DescribeStep(of.scene, of.Get("sim.2"), of); };
+  const std::string force = rows(run).back();
+  const std::size_t tab = force.find('\t');
+  ASSERT_NE(tab, std::string::npos);
+  ASSERT_NE(force, rows(other).back());
+  EXPECT_NE(difference.text.find(force.substr(0, tab) + ": A " + force.substr(tab + 1) + ", B " +
+                                 rows(other).back().substr(tab + 1)),
+            std::string::npos)
+      << difference.text;
   const Shot shot = MakeShot(900);
   const auto marked = [&](const LoadedRun& against, const std::vector<std::string>& ids) {
     return CountMarked(DrawPairOfRuns(run, against, ids, shot, std::nullopt));

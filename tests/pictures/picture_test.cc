@@ -356,6 +356,17 @@ TEST_F(PictureMakerTest, KeyStepsAreTheFirstGraspsOfEachKindAndEveryFifthIterati
   EXPECT_FALSE(IsKeyStep(Press(0.11, 0.012).facts, timeline_));
 }
 
+TEST(WordsTest, DifferencesAreNamedAsCardsNameThemWithUnits) {
+  const std::vector<std::string> left = {"Prose.", "largest force\t2.05 N", "came\t1 mm", "a\t1"},
+                                 right = {"Other.", "came\t2 mm", "largest force\t2.05 N", "b\t1"};
+  EXPECT_EQ(DescribeRowDifferences(left, right, 3), "came: A 1 mm, B 2 mm");
+  EXPECT_EQ(DescribeRowDifferences(left, left, 3), "");
+  EXPECT_EQ(DescribeRowDifferences({"x\t1", "y\t1"}, {"x\t2", "y\t2"}, 1), "x: A 1, B 2");
+  EXPECT_EQ(DescribeField("details.max_force_N"), "largest force [N]");
+  EXPECT_EQ(DescribeField("details.score_scale"), "weight of the terms that break ties");
+  EXPECT_EQ(DescribeField("bodies[0].p_WB[1]"), "bodies[0].p_WB[1]");
+}
+
 TEST(ForcesTest, PressedPulledRulerObeysTheSpringAndTheCone) {
   JobSetup setup;
   setup.scene = MakeRulerScene();
