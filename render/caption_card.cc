@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/label_layout.h"
 
@@ -31,6 +32,27 @@ float TitleSize(FontSet& fonts, const OverlayStyle& style, const std::string& ti
   return std::clamp(std::floor(3.9F * fitting) / 4.0F, style.text, style.title);
 }
 
+// A title is broken between its parts, which three blanks divide, before it is within one.
+std::vector<std::string> WrapTitle(FontSet& fonts, float size, const std::string& title,
+                                   double width) {
+  const std::string kGap = "   ";
+  std::vector<std::string> lines;
+  for (std::size_t start = 0; start <= title.size();) {
+    const std::size_t end = std::min(title.find(kGap, start), title.size());
+    const std::string part = title.substr(start, end - start);
+    start = end + kGap.size();
+    const std::string longer = lines.empty() ? part : lines.back() + kGap + part;
+    if (!lines.empty() && fonts.TextWidth(FontFace::kBold, size, longer) <= width) {
+      lines.back() = longer;
+      continue;
+    }
+    for (std::string& line : WrapText(fonts, FontFace::kBold, size, part, width)) {
+      lines.push_back(std::move(line));
+    }
+  }
+  return lines;
+}
+
 std::vector<CardLine> LayOutLines(FontSet& fonts, const OverlayStyle& style,
                                   const RenderCaption& caption, double width) {
   std::vector<CardLine> lines;
@@ -38,7 +60,7 @@ std::vector<CardLine> LayOutLines(FontSet& fonts, const OverlayStyle& style,
     const float size = fonts.TextWidth(FontFace::kBold, style.title, caption.title) <= width
                            ? style.title
                            : TitleSize(fonts, style, caption.title, width);
-    for (const std::string& text : WrapText(fonts, FontFace::kBold, size, caption.title, width)) {
+    for (const std::string& text : WrapTitle(fonts, size, caption.title, width)) {
       lines.push_back({FontFace::kBold, size, text, "", false, true});
     }
   }
@@ -202,10 +224,16 @@ std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyl
                                const RenderLegend& legend, const CardArea& area) {
   if (legend.title.empty() && legend.scale.empty() && legend.swatches.empty()) return std::nullopt;
   const double pad = style.px(12.0), line = std::round(style.small * 1.55);
-  const double bar_width = style.px(220.0), bar_height = style.px(12.0);
   const auto text_width = [&](const std::string& text) {
     return static_cast<double>(fonts.TextWidth(FontFace::kSans, style.small, text));
   };
+  double widest_tick = 0.0;
+  for (const auto& [at, text] : legend.ticks) {
+    widest_tick = std::max(widest_tick, text_width(text) + style.px(8.0));
+  }
+  const double bar_width = std::max(style.px(220.0),
+                                    static_cast<double>(legend.ticks.size()) * widest_tick),
+               bar_height = style.px(12.0);
   double width = std::max(legend.scale.empty() ? 0.0 : bar_width, text_width(legend.title));
   double height = legend.title.empty() ? 0.0 : line;
   if (!legend.scale.empty()) height += bar_height + (legend.ticks.empty() ? 0.0 : line);

@@ -107,6 +107,10 @@ class Overlay {
     const Rect footer{0.0, bottom, canvas_.width(), footer_height};
     std::vector<Rect> obstacles = {footer};
     const double note_room = bar ? 0.0 : style_.px(12.0);
+    if (!bar) {
+      const int labels = static_cast<int>(scene_.labels.size());
+      obstacles.push_back(NoteArea(FooterNote(labels, grid_spacing)));
+    }
     const bool has_card = !caption.title.empty() || !caption.lines.empty();
     CardArea area{bottom - note_room, {}, {}, !has_card};
     if (!scene_.fixed_corners) area.outlines = Outlines(scene_, view_, true);
@@ -125,8 +129,10 @@ class Overlay {
   // Returns how many labels found no place.
   int DrawLabels(std::vector<Rect> obstacles) {
     const double pad = style_.px(9.0), bar = style_.px(4.0);
-    const double height = std::round(style_.text + style_.px(11.0));
     const Rect picture{0.0, 0.0, canvas_.width(), canvas_.height()};
+    const double widest = 0.45 * picture.width;  // a box may take no more than part of it
+    const float type = LabelType(widest);
+    const double height = std::round(type + style_.px(11.0));
     std::vector<LabelRequest> requests;
     std::vector<const RenderLabel*> labels;
     std::vector<std::string> texts;
@@ -139,10 +145,9 @@ class Overlay {
         ++left_out;  // a leader into the card would point at its text
         continue;
       }
-      // A box may take no more than part of the picture's width.
-      texts.push_back(
-          FitText(fonts_, FontFace::kSans, style_.text, label.text, 0.45 * picture.width));
-      requests.push_back({*anchor, {std::ceil(Width(texts.back())) + 2.0 * pad + bar, height}});
+      texts.push_back(FitText(fonts_, FontFace::kSans, type, label.text, widest));
+      const double width = fonts_.TextWidth(FontFace::kSans, type, texts.back());
+      requests.push_back({*anchor, {std::ceil(width) + 2.0 * pad + bar, height}});
       labels.push_back(&label);
     }
     LabelArea area;
@@ -163,10 +168,9 @@ class Overlay {
       const Rect& box = *boxes[i];
       canvas_.FillRoundedRect(box, style_.px(3.0), style_.panel);
       canvas_.FillRect({box.x, box.y, bar, box.height}, WithAlpha(labels[i]->color, 1.0F));
-      const double cap = fonts_.CapHeight(FontFace::kSans, style_.text);
-      canvas_.DrawText(FontFace::kSans, style_.text,
-                       {box.x + bar + pad, box.y + 0.5 * (box.height + cap)}, texts[i],
-                       style_.bright);
+      const double cap = fonts_.CapHeight(FontFace::kSans, type);
+      canvas_.DrawText(FontFace::kSans, type, {box.x + bar + pad, box.y + 0.5 * (box.height + cap)},
+                       texts[i], style_.bright);
     }
     return left_out;
   }
@@ -201,23 +205,43 @@ class Overlay {
     return note;
   }
 
+  // Of the note where there is no footer, which then is no wider than part of the picture.
+  float NoteType(const std::string& note) {
+    constexpr float kSmallest = 8.0F;
+    float size = style_.small;
+    while (size > kSmallest &&
+           fonts_.TextWidth(FontFace::kSans, size, note) > 0.5 * canvas_.width()) {
+      size -= 0.25F;
+    }
+    return size;
+  }
+
+  Rect NoteArea(const std::string& note) {
+    const float size = NoteType(note);
+    const double width = note.empty() ? 0.0 : fonts_.TextWidth(FontFace::kSans, size, note);
+    const double height = note.empty() ? 0.0 : style_.px(10.0) + size;
+    return {canvas_.width() - style_.px(16.0) - width, canvas_.height() - height, width, height};
+  }
+
   void DrawFooter(const FooterText& text, const Rect& footer, int labels_left_out,
                   double grid_spacing) {
     const double pad = style_.px(16.0);
     // Where both have no room it says what is missing, and the grid is seen anyway.
-    const auto draw_note = [&](double baseline, const Rgba& color, double room) {
+    // Where both have no room it says what is missing, and the grid is seen anyway.
+    const auto draw_note = [&](float size, double baseline, const Rgba& color, double room) {
       const auto width = [&](const std::string& note) {
-        return static_cast<double>(fonts_.TextWidth(FontFace::kSans, text.size, note));
+        return static_cast<double>(fonts_.TextWidth(FontFace::kSans, size, note));
       };
       std::string note = FooterNote(labels_left_out, grid_spacing);
       if (width(note) > room && labels_left_out > 0) note = FooterNote(labels_left_out, 0.0);
-      note = FitText(fonts_, FontFace::kSans, text.size, note, room);
-      canvas_.DrawText(FontFace::kSans, text.size, {canvas_.width() - pad - width(note), baseline},
-                       note, color);
+      note = FitText(fonts_, FontFace::kSans, size, note, room);
+      canvas_.DrawText(FontFace::kSans, size, {canvas_.width() - pad - width(note), baseline}, note,
+                       color);
     };
     const double whole = canvas_.width() - 2.0 * pad;
     if (footer.height == 0.0) {
-      draw_note(canvas_.height() - style_.px(10.0), style_.on_floor, whole);
+      const float size = NoteType(FooterNote(labels_left_out, grid_spacing));
+      draw_note(size, canvas_.height() - style_.px(10.0), style_.on_floor, whole);
       return;
     }
     canvas_.FillRect(footer, style_.panel);
@@ -232,15 +256,23 @@ class Overlay {
     for (std::size_t i = 0; i < text.lines.size(); ++i) {
       if (i == text.note_line) {
         const double taken = fonts_.TextWidth(FontFace::kMono, text.size, text.lines[i]);
-        draw_note(baseline, style_.muted, whole - (taken > 0.0 ? taken + pad : 0.0));
+        draw_note(text.size, baseline, style_.muted, whole - (taken > 0.0 ? taken + pad : 0.0));
       }
       canvas_.DrawText(FontFace::kMono, text.size, {pad, baseline}, text.lines[i], style_.normal);
       baseline += text.line_height;
     }
   }
 
-  double Width(const std::string& text) {
-    return fonts_.TextWidth(FontFace::kSans, style_.text, text);
+  // As large as the style has it, or smaller, so that the longest label is not cut.
+  float LabelType(double width) {
+    constexpr float kSmallest = 8.0F;  // [pixels], below which letters fill in
+    float size = style_.text;
+    for (const RenderLabel& label : scene_.labels) {
+      while (size > kSmallest && fonts_.TextWidth(FontFace::kSans, size, label.text) > width) {
+        size -= 0.25F;
+      }
+    }
+    return size;
   }
 
   FontSet& fonts_;

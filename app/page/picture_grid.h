@@ -20,12 +20,14 @@ struct PictureGrid {
   std::vector<Cell> cells;
   int columns = 0;                     ///< 0: as many as fill it best
   std::vector<std::string> row_names;  ///< above a row each; may be empty
-  int most_lines = 4;                  ///< of a sentence
-  int width = 1920, height = 1440;     ///< of the whole [pixels]; the height is an upper limit
+  int most_lines = 4;                  ///< of a sentence; fewer where pictures would be too small
+  int width = 1920, height = 1440;     ///< of the whole at most [pixels]: nothing is left blank
   double font_scale = 1.0;
 };
 
-/// @throws InputError for a size in which a picture could not be seen.
+/// Rows of one picture each stand side by side, under their names. Type and sentences give way to
+/// pictures that would be too small. @throws InputError for a size in which a picture could not be
+/// seen.
 Image DrawGrid(const PictureGrid& grid);
 
 }  // namespace pregrasp

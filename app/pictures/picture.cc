@@ -330,17 +330,31 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
   return picture;
 }
 
+namespace {
+
+// Whether the step's object was dropped: its lift failed, or it is far below where it began.
+bool IsDropped(const StepFacts& step, double lowest_z, double start_z) {
+  constexpr double kFar = 0.5;  // [m], below which no hand hangs that takes hold at the start
+  const auto* lift = std::get_if<LiftFacts>(&step.details);
+  return (lift != nullptr && !lift->held) || lowest_z < start_z - kFar;
+}
+
+}  // namespace
+
 MatrixX3 PictureMaker::CalcFocus(const std::vector<const StepFacts*>& shown,
                                  const FactsSource& steps, const PictureConfig& config) const {
   PREGRASP_CHECK(!shown.empty());
   MatrixX3 focus_U = impl_->start_focus_U;
+  const double start_z = focus_U.col(2).minCoeff();
   for (const StepFacts* step : shown) {
     PictureOverlay overlay = Chosen(MakeOverlay(*step, steps, impl_->hand), config);
     // This step's hand alone, not those before it in its motion.
     if (overlay.hand) overlay.focus_W = HandCorners(impl_->hand, *overlay.hand);
     // The outermost do: a mesh may have any number of points.
-    Append(focus_U,
-           FindOutermost(impl_->FindFocus(*step, overlay, config) * impl_->R_UW.transpose()));
+    const MatrixX3 seen_U =
+        FindOutermost(impl_->FindFocus(*step, overlay, config) * impl_->R_UW.transpose());
+    if (shown.size() > 1 && IsDropped(*step, seen_U.col(2).minCoeff(), start_z)) continue;
+    Append(focus_U, seen_U);
   }
   return focus_U * impl_->R_UW;
 }
@@ -360,13 +374,6 @@ namespace {
 bool HaveOneShape(const PictureConfig& a, const PictureConfig& b) {
   return static_cast<std::int64_t>(a.width) * b.height ==
          static_cast<std::int64_t>(b.width) * a.height;
-}
-
-// Whether the step's object was dropped: its lift failed, or it is far below where it began.
-bool IsDropped(const StepFacts& step, double lowest_z, double start_z) {
-  constexpr double kFar = 0.5;  // [m], below which no hand hangs that takes hold at the start
-  const auto* lift = std::get_if<LiftFacts>(&step.details);
-  return (lift != nullptr && !lift->held) || lowest_z < start_z - kFar;
 }
 
 }  // namespace

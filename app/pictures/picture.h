@@ -78,7 +78,8 @@ class PictureMaker {
                       const PictureConfig& config) const;
 
   /// What matters in every one of these steps: the object, where plans leave it, the hand, as
-  /// points of the world (#points x 3). @param shown  at least one.
+  /// points of the world (#points x 3). Of several steps those do not count whose object was
+  /// dropped, by a lift that failed or far below everything else. @param shown  at least one.
   MatrixX3 CalcFocus(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
                      const PictureConfig& config) const;
 
@@ -88,9 +89,8 @@ class PictureMaker {
                      const std::optional<Vector3>& view = std::nullopt) const;
 
   /// Gives those of these pictures that have no camera one: of all that are as wide for their
-  /// height the same, framed over all their steps. What was dropped, by a lift that failed or far
-  /// below everything else, frames nothing, and keeps an automatic camera of its own where that one
-  /// does not show it.
+  /// height the same, framed over all their steps. What was dropped frames nothing, and keeps an
+  /// automatic camera of its own where that one does not show it.
   void ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps) const;
 
  private:
