@@ -86,8 +86,8 @@ void Recorder::Add(const Timeline::Node& node) {
 
 void Recorder::Shoot(const Timeline::Node& node, const Shot& shot) {
   if (pictures_ == PictureMode::kNone) return;
+  Draw(node, shot);
   if (shot.config.camera) {
-    Draw(node, shot);
     pending_.erase(node.number);
   } else {
     pending_[node.number] = {shot, true};

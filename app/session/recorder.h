@@ -21,8 +21,8 @@ class Recorder {
   /// Writes the next node. Its own picture waits for DrawPending: only when all steps are there is
   /// it known what one camera has to show.
   void Add(const Timeline::Node& node);
-  /// A picture of a node that was added; of several of one node the last stays. One with a camera
-  /// is drawn now, others wait. @throws Interrupted, without it.
+  /// A picture of a node that was added, drawn now; of several of one node the last stays. One
+  /// without a camera is drawn once more by DrawPending. @throws Interrupted, without it.
   void Shoot(const Timeline::Node& node, const Shot& shot);
 
   /// Draws what waits, by one camera (PictureMaker::ShareCamera); to be called before Finish, so

@@ -328,7 +328,7 @@ function Session:simulate(options) end
 
 ---From now on every step goes to a run directory: its log pair, and pictures of the start and of each
 ---shot{} ("key"), of every step ("all"), or none. It is finished by save(), or at the script's end:
----then pictures without a camera are drawn, all by one that shows what each of them has to.
+---then pictures without a camera are drawn (those of shot{} once more), all by one that shows what each of them has to.
 ---@param options RecordOptions
 function Session:record(options) end
 
