@@ -109,8 +109,8 @@ Planner::Planner(std::shared_ptr<const World> world, const HandModel& hand, Worl
   config.Validate();
   RequireForces(config, scene());
   half_world_ = std::make_shared<const World>(scene(), HalfStep(world_->config()));
-  extreme_worlds_ = std::make_shared<const std::vector<World>>(
-      MakeExtremeWorlds(scene(), world_->config()));
+  extreme_worlds_ =
+      std::make_shared<const std::vector<World>>(MakeExtremeWorlds(scene(), world_->config()));
   environment_ = std::make_shared<const EnvironmentDistance>(scene());
   shape_ = std::make_shared<const SignedDistance>(scene().object().shape);
   score_ =

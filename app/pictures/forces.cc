@@ -8,7 +8,7 @@ namespace pregrasp {
 ForceSplit SplitFingerForce(const Scene& scene, const Quaternion& q_WO, const FingerFacts& finger) {
   const Vector3 nhat_W = q_WO * finger.nhat_O;
   ForceSplit split;
-  split.normal = -finger.f_W.dot(nhat_W);
+  split.normal = 0.0 - finger.f_W.dot(nhat_W);  // 0, not -0, of no force
   split.tangential = (finger.f_W + split.normal * nhat_W).norm();
   split.limit = scene.fingertips.friction * std::max(0.0, split.normal);
   return split;

@@ -120,8 +120,9 @@ TEST_F(PlannerScriptTest, ScreeningTellsWhatAPathIsWorthAndStepsGoOnFromThere) {
     print(first.round, first.iterations, first.rollouts, first.step_id, second.round, second.step_id)
     print(second.value >= first.value, second.score_scale == first.score_scale, second.rest_reward <= 3)
     print(o.iteration, o.best_cost, #o.best_history)
-    o:step()
-    print(o.iteration, o.best_cost <= second.best.total, o.score_scale == first.score_scale, #o.best_history)
+    o:step()  -- where plans are tried in other worlds, too, which takes of what they gain
+    local lost = 0.33 * math.max(second.best.reward - second.rest_reward, 0)
+    print(o.iteration, o.best_cost <= second.best.total + lost, o.score_scale == first.score_scale, #o.best_history)
     print(second.best.room >= 0, second.best.hold >= 0, second.best.reward >= second.best.final_score)
     local _, refusal = pcall(o.screen, o)
     print(refusal:find("expected a path that is not being optimised yet", 1, true) ~= nil))"),
