@@ -220,19 +220,46 @@ std::optional<Rect> DrawCaptionCard(Canvas& canvas, FontSet& fonts, const Overla
   return card;
 }
 
+namespace {
+
+// What the ticks of a scale need not to touch each other.
+double WidthOfTicks(FontSet& fonts, const OverlayStyle& style, const RenderLegend& legend,
+                    float size) {
+  double widest = 0.0;
+  for (const auto& [at, text] : legend.ticks) {
+    widest = std::max(widest, fonts.TextWidth(FontFace::kSans, size, text) + style.px(8.0));
+  }
+  return static_cast<double>(legend.ticks.size()) * widest;
+}
+
+// Of a legend whose words take no more than this width, as otherwise it hides what it is about.
+float LegendType(FontSet& fonts, const OverlayStyle& style, const RenderLegend& legend,
+                 double width) {
+  constexpr float kSmallest = 8.0F;  // [pixels], below which letters fill in
+  float size = style.small;
+  const auto fits = [&] {
+    bool all = fonts.TextWidth(FontFace::kSans, size, legend.title) <= width &&
+               WidthOfTicks(fonts, style, legend, size) <= width;
+    for (const auto& [color, text] : legend.swatches) {
+      all = all && 2.5 * size + fonts.TextWidth(FontFace::kSans, size, text) <= width;
+    }
+    return all;
+  };
+  while (size > kSmallest && !fits()) size -= 0.25F;
+  return size;
+}
+
+}  // namespace
+
 std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyle& style,
                                const RenderLegend& legend, const CardArea& area) {
   if (legend.title.empty() && legend.scale.empty() && legend.swatches.empty()) return std::nullopt;
-  const double pad = style.px(12.0), line = std::round(style.small * 1.55);
+  const float small = LegendType(fonts, style, legend, 0.5 * canvas.width() - style.px(24.0));
+  const double pad = style.px(12.0), line = std::round(small * 1.55);
   const auto text_width = [&](const std::string& text) {
-    return static_cast<double>(fonts.TextWidth(FontFace::kSans, style.small, text));
+    return static_cast<double>(fonts.TextWidth(FontFace::kSans, small, text));
   };
-  double widest_tick = 0.0;
-  for (const auto& [at, text] : legend.ticks) {
-    widest_tick = std::max(widest_tick, text_width(text) + style.px(8.0));
-  }
-  const double bar_width = std::max(style.px(220.0),
-                                    static_cast<double>(legend.ticks.size()) * widest_tick),
+  const double bar_width = std::max(style.px(220.0), WidthOfTicks(fonts, style, legend, small)),
                bar_height = style.px(12.0);
   double width = std::max(legend.scale.empty() ? 0.0 : bar_width, text_width(legend.title));
   double height = legend.title.empty() ? 0.0 : line;
@@ -253,8 +280,8 @@ std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyl
   double y = card.y + 0.8 * pad;
   const double x = card.x + pad;
   const auto write = [&](double left, const std::string& text, const Rgba& color) {
-    const double cap = fonts.CapHeight(FontFace::kSans, style.small);
-    canvas.DrawText(FontFace::kSans, style.small, {left, y + 0.5 * (line + cap)}, text, color);
+    const double cap = fonts.CapHeight(FontFace::kSans, small);
+    canvas.DrawText(FontFace::kSans, small, {left, y + 0.5 * (line + cap)}, text, color);
   };
   if (!legend.title.empty()) {
     write(x, legend.title, style.normal);

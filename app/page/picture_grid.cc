@@ -60,6 +60,8 @@ class Layout {
     int best = 0;
     double best_type = usual;
     for (double type = usual; type == usual || type >= kSmallestType; type *= 0.9) {
+      SetType(type, fewest);
+      if (kInALine * type_ > WidestCell()) continue;  // whatever else
       LayOut(type, fewest);
       if (IsLegible()) {
         for (int lines = grid.most_lines; lines > fewest; --lines) {
@@ -99,17 +101,20 @@ class Layout {
   }
 
  private:
+  static constexpr double kInALine = 13.0;  // type of a line's width: a few words, 25 letters
+
+  int WidestCell() const { return static_cast<int>((grid_.width - gap_) / columns_ - gap_); }
+
   // Whether one sees what a picture is about, and a line below it has a few words.
   bool IsLegible() const {
-    constexpr int kWanted = 240;       // [pixels]
-    constexpr double kInALine = 13.0;  // of the type's size, some 25 letters
-    const int widest = static_cast<int>((grid_.width - gap_) / columns_ - gap_);
-    return cell_ >= std::max(kSmallestCell, std::min(kWanted, widest)) && cell_ >= kInALine * type_;
+    constexpr int kWanted = 240;  // [pixels]
+    return cell_ >= std::max(kSmallestCell, std::min(kWanted, WidestCell())) &&
+           cell_ >= kInALine * type_;
   }
 
   double ColumnX(int column) const { return std::floor(gap_ + column * (cell_ + gap_)); }
 
-  void LayOut(double type, int most_lines) {
+  void SetType(double type, int most_lines) {
     type_ = static_cast<float>(std::round(4.0 * type) / 4.0);
     line_ = std::round(1.35 * type_);
     gap_ = std::round(0.6 * type_);
@@ -118,15 +123,20 @@ class Layout {
         grid_.columns > 0 ? grid_.columns : ChooseColumns(grid_.width, grid_.height, count_, words);
     if (beside_) columns_ = count_;
     most_lines_ = most_lines;
+  }
+
+  void LayOut(double type, int most_lines) {
+    SetType(type, most_lines);
     heading_.clear();
     if (!grid_.heading.empty()) {
       heading_ = WrapText(fonts_, FontFace::kBold, type_, grid_.heading, grid_.width - 2.0 * gap_);
     }
     // The widest cells with which the whole is no higher than it may be.
-    int high = static_cast<int>((grid_.width - gap_) / columns_ - gap_), low = 0;
+    int high = WidestCell(), low = 0;
     Place(high);
     if (height_ <= grid_.height) return Trim();
-    while (high - low > 1) {
+    constexpr int kCloseEnough = 2;  // [pixels]
+    while (high - low > kCloseEnough) {
       const int middle = (low + high) / 2;
       Place(middle);
       (height_ <= grid_.height ? low : high) = middle;
@@ -204,10 +214,12 @@ class Layout {
     if (const std::size_t gap = title.find("   "); gap != std::string::npos) {
       words.lines = {title.substr(0, gap), title.substr(gap + 3)};
     }
-    for (std::string& line : words.lines) {
-      while (!Fits(FontFace::kBold, words.size, line, cell_) && words.size > kSmallestType) {
-        words.size -= 0.25F;
-      }
+    for (const std::string& line : words.lines) {
+      // In quarters of a pixel, and a little less than what fits: widths do not grow evenly.
+      const double share = cell_ / fonts_.TextWidth(FontFace::kBold, type_, line);
+      const double fitting = std::floor(3.9 * share * type_) / 4.0;
+      words.size = std::max(std::min(kSmallestType, type_),
+                            std::min(words.size, static_cast<float>(fitting)));
     }
     for (std::string& line : words.lines) {
       line = FitText(fonts_, FontFace::kBold, words.size, line, cell_);

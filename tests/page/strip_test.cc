@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/core/error.h"
 #include "app/page/pair.h"
-#include "app/recording/run_comparison.h"
+#include "app/pictures/words.h"
 #include "app/session/session.h"
 #include "render/canvas.h"
 #include "render/palette.h"
@@ -109,6 +110,59 @@ TEST_F(StripTest, StepsStandInOneRowInTheirOrderAndUnknownOnesAreRefused) {
   EXPECT_THROW(DrawStripOfRun(run, {"sim.1", "sim.2"}, MakeShot(300), std::nullopt), InputError);
 }
 
+TEST(PictureGridTest, PairsOfOneStepStandSideBySideAndNothingIsLeftBlank) {
+  PictureGrid grid;
+  std::vector<int> widths;
+  grid.cells.resize(2);
+  for (PictureGrid::Cell& cell : grid.cells) {
+    cell.title = "sim.1   t = 0.20 s";
+    cell.sentence = "one line";
+    cell.draw = [&widths](int width, int height) {
+      widths.push_back(width);
+      return Image{width, height,
+                   std::vector<std::uint8_t>(static_cast<std::size_t>(width) * height * 3, 0)};
+    };
+  }
+  grid.row_names = {"A", "B"};
+  grid.columns = 1;
+  grid.width = 2400;
+  grid.height = 1440;
+  EXPECT_EQ(DrawGrid(grid).width, 2400);
+  EXPECT_GT(widths.at(0), 1150);
+  widths.clear();
+  // Two steps of two runs are as high as they may be, and the sheet as wide as they are.
+  grid.columns = 2;
+  for (const int copy : {0, 1}) grid.cells.push_back(grid.cells[static_cast<std::size_t>(copy)]);
+  const Image sheet = DrawGrid(grid);
+  EXPECT_GT(widths.at(0), 800);
+  EXPECT_NEAR(sheet.width, 2 * widths.at(0), 80);
+  EXPECT_NEAR(sheet.height, 1440, 10);
+}
+
+TEST(PictureGridTest, ManyStepsAndLargeTypeLeavePicturesThatCanBeSeen) {
+  for (const double font_scale : {1.0, 4.0}) {
+    for (const std::size_t count : {20U, 48U}) {
+      PictureGrid grid;
+      int narrowest = 100000;
+      grid.most_lines = 8;
+      grid.font_scale = font_scale;
+      grid.cells.resize(count);
+      for (PictureGrid::Cell& cell : grid.cells) {
+        cell.title = "48. path.2.grasp.10~4   t = 3.10 s";
+        cell.sentence = "Iteration 15: 48 plans, of noise about the mean or of steady pushes";
+        cell.draw = [&narrowest](int width, int height) {
+          narrowest = std::min(narrowest, width);
+          return Image{width, height,
+                       std::vector<std::uint8_t>(static_cast<std::size_t>(width) * height * 3, 0)};
+        };
+      }
+      const Image sheet = DrawGrid(grid);
+      EXPECT_LE(sheet.height, grid.height);
+      EXPECT_GE(narrowest, 200) << count << " " << font_scale;
+    }
+  }
+}
+
 TEST_F(StripTest, TwoRunsFirstDifferWhereDiffSaysAndThereTheyAreFramed) {
   const LoadedRun run = MakeRun("run", 0.1), same = MakeRun("same", 0.1),
                   other = MakeRun("other", 0.05);
@@ -119,13 +173,17 @@ TEST_F(StripTest, TwoRunsFirstDifferWhereDiffSaysAndThereTheyAreFramed) {
   // In the words of the card, with its units.
   EXPECT_EQ(difference.text.rfind("The first step that differs, sim.2, has ", 0), 0U)
       << difference.text;
-  const auto rows = [](const LoadedRun& of) { return DescribeStep(of.scene, of.Get("sim.2"), of); };
-  const std::string force = rows(run).back();
-  const std::size_t tab = force.find('\t');
-  ASSERT_NE(tab, std::string::npos);
-  ASSERT_NE(force, rows(other).back());
-  EXPECT_NE(difference.text.find(force.substr(0, tab) + ": A " + force.substr(tab + 1) + ", B " +
-                                 rows(other).back().substr(tab + 1)),
+  const auto row = [](const LoadedRun& of) {
+    const std::vector<std::string> lines = DescribeStep(of.scene, of.Get("sim.2"), of);
+    return *std::find_if(lines.begin(), lines.end(), [](const std::string& line) {
+      return line.find('\t') != std::string::npos;
+    });
+  };
+  const std::string a = row(run), b = row(other);
+  const std::size_t tab = a.find('\t');
+  ASSERT_NE(a, b);
+  EXPECT_NE(difference.text.find(a.substr(0, tab) + ": A " + a.substr(tab + 1) + ", B " +
+                                 b.substr(tab + 1)),
             std::string::npos)
       << difference.text;
   const Shot shot = MakeShot(900);
