@@ -201,9 +201,8 @@ Settings MppiSettings() {
        {}},
       {"mppi.fragility",
        Real(0.0, 1.0),
-       "weight: what a plan gains, by how far away (4 cm or 20 deg count as 1) it ends in a "
-       "lighter, "
-       "more slippery and in a heavier, stickier world",
+       "weight: what a plan gains, by how far away (4 cm or 20 deg count as 1) it ends in a light, "
+       "slippery and in a heavy, sticky world",
        FIELD(mppi.weights.fragility),
        {}},
       {"mppi.fall",

@@ -48,13 +48,14 @@ std::span<const CostTerm> CostTerms() {
   return kTerms;
 }
 
-double CalcFragility(const WorldState& end, std::span<const WorldState> others) {
+double CalcFragility(const PlanOutcome& outcome, std::span<const PlanOutcome> others) {
+  if (outcome.diverged) return 1.0;
   double sum = 0.0;
-  for (const WorldState& other : others) {
+  for (const PlanOutcome& other : others) {
     double shift = 0.0, turn_deg = 0.0;
-    CalcShift(end, other, &shift, &turn_deg);
+    CalcShift(outcome.end, other.end, &shift, &turn_deg);
     const double away = std::max(shift / kRobustShift, turn_deg / kRobustTurnDeg);
-    sum += std::min(0.5 * away, 1.0);
+    sum += other.diverged ? 1.0 : std::min(0.5 * away, 1.0);
   }
   return others.empty() ? 0.0 : sum / static_cast<double>(others.size());
 }

@@ -58,10 +58,10 @@ struct CostTerm {
 };
 std::span<const CostTerm> CostTerms();
 
-/// How little a plan does elsewhere of what it does here: how far from its `end`, or how far turned
-/// from it, the same targets leave the object in each of `others`, over twice the 2 cm and 10
-/// degrees of the design's "robust", at most 1, their mean.
-double CalcFragility(const WorldState& end, std::span<const WorldState> others);
+/// How little a plan does elsewhere of what it does here: how far from its end, or how far turned
+/// from it, the same targets leave the object in the worlds of `others`, over twice the 2 cm and 10
+/// degrees of the design's "robust", at most 1 each, their mean. 1 of what diverged.
+double CalcFragility(const PlanOutcome& outcome, std::span<const PlanOutcome> others);
 
 /// What a plan is after: the paper's sum of scores at the stages' starts and at the end, but a
 /// start counts at most as much as the end. A plan that swings the object up and drops it is worth

@@ -140,18 +140,18 @@ void Mppi::FixScale(MppiState& state, const std::vector<Judged>& judged) const {
 }
 
 double Mppi::TryElsewhere(const PlanOutcome& nominal) const {
-  if (nominal.diverged) return 1.0;
-  std::vector<WorldState> ends;
+  std::vector<PlanOutcome> outcomes;
   for (const World& world : *problem_.others) {
-    ends.push_back(SimulatePlan(world, *problem_.environment, problem_.start, nominal.plan,
-                                config_.timing, Stepper::kKernel)
-                       .end);
+    if (nominal.diverged) break;
+    outcomes.push_back(SimulatePlan(world, *problem_.environment, problem_.start, nominal.plan,
+                                    config_.timing, Stepper::kKernel));
   }
-  return CalcFragility(nominal.end, ends);
+  return CalcFragility(nominal, outcomes);
 }
 
 void Mppi::AddFragilities(const std::vector<PlanOutcome>& outcomes, double rest_reward,
                           std::vector<MppiSample>& samples, ThreadPool& pool) const {
+  if (!is_tried_elsewhere()) return;
   std::vector<int> order(samples.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -202,8 +202,7 @@ void Mppi::Iterate(MppiState& state, bool elsewhere, ThreadPool& pool) const {
     sample.X_WO_end = outcomes[i].end.bodies.front().X_WB();
     PREGRASP_CHECK(AreFinite(sample.cost.total, sample.X_WO_end), i, sample.cost.total);
   }
-  if (elsewhere && is_tried_elsewhere())
-    AddFragilities(outcomes, state.rest_reward, state.samples, pool);
+  if (elsewhere) AddFragilities(outcomes, state.rest_reward, state.samples, pool);
   for (const MppiSample& sample : state.samples) {
     mean_cost += sample.cost.total / count;
     Offer(state, sample);

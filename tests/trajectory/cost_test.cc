@@ -93,15 +93,15 @@ TEST_F(PlanCostTest, ATipThatIsTooFastOrTooAbruptForAHandCostsByTheWorseOfBoth) 
 }
 
 TEST(CalcFragilityTest, IsTheMeanOfHowFarAwayOtherWorldsEnd) {
-  WorldState here;
-  here.bodies.resize(1);
+  PlanOutcome here;
+  here.end.bodies.resize(1);
   const auto at = [&](double x, double degrees) {
-    WorldState state = here;
-    state.bodies[0].p_WB.x() += x;
-    state.bodies[0].q_WB = Quaternion(Eigen::AngleAxisd(DegToRad(degrees), Vector3::UnitZ()));
-    return state;
+    PlanOutcome outcome = here;
+    outcome.end.bodies[0].p_WB.x() += x;
+    outcome.end.bodies[0].q_WB = Quaternion(Eigen::AngleAxisd(DegToRad(degrees), Vector3::UnitZ()));
+    return outcome;
   };
-  const auto fragility = [&](const std::vector<WorldState>& others) {
+  const auto fragility = [&](const std::vector<PlanOutcome>& others) {
     return CalcFragility(here, others);
   };
   EXPECT_EQ(fragility({}), 0.0);
@@ -110,6 +110,10 @@ TEST(CalcFragilityTest, IsTheMeanOfHowFarAwayOtherWorldsEnd) {
   EXPECT_NEAR(fragility({at(0, 10)}), 0.5, 1e-9);
   EXPECT_NEAR(fragility({at(0.01, 20)}), 1.0, 1e-9);  // the worse of both
   EXPECT_NEAR(fragility({at(0, 0), at(5, 0)}), 0.5, 1e-12);
+  PlanOutcome diverged = here;  // near, as what is kept is the last finite state
+  diverged.diverged = true;
+  EXPECT_EQ(fragility({diverged}), 1.0);
+  EXPECT_EQ(CalcFragility(diverged, {}), 1.0);
 }
 
 TEST_F(PlanCostTest, AFragilePlanLosesOfWhatItGainsAndNoMore) {

@@ -224,14 +224,13 @@ TEST(MppiTest, TheBetterHalfIsTriedInOtherWorldsAndTheRestCountsAsMostFragile) {
     const MppiSample& sample = state.samples[order[k].second];
     EXPECT_NEAR(sample.cost.total, order[k].first + sample.cost.fragility, 1e-12);
     if (k < order.size() / 2) {
-      std::vector<WorldState> ends;
+      std::vector<PlanOutcome> outcomes;
       const PlanOutcome nominal = mppi.Simulate(sample.action);
       for (const World& world : others) {
-        ends.push_back(SimulatePlan(world, ruler.environment, problem.start, nominal.plan,
-                                    mppi.config().timing, Stepper::kKernel)
-                           .end);
+        outcomes.push_back(SimulatePlan(world, ruler.environment, problem.start, nominal.plan,
+                                        mppi.config().timing, Stepper::kKernel));
       }
-      const double fragility = CalcFragility(nominal.end, ends);
+      const double fragility = CalcFragility(nominal, outcomes);
       EXPECT_NEAR(sample.cost.fragility, fragility * loss(sample), 1e-12);
       tried += fragility < 1.0 && loss(sample) > 0.0 ? 1 : 0;
     } else {
