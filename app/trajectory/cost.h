@@ -13,7 +13,8 @@ namespace pregrasp {
 /// is zero for a plan that does nothing wrong, and bounded. Two kinds: what a certificate refuses
 /// has its weight in the scores' own unit and outweighs what a path can gain; what is only better
 /// or worse is a tie-breaker, its weight a share of how far apart the plans' scores are. On flat
-/// objects these differ by 0.01 in all, which any absolute weight would swamp.
+/// objects these differ by 0.01 in all, which any absolute weight would swamp. Fragility is
+/// neither: a share of what the plan itself gains.
 struct CostWeights {
   double room = 1.0;         ///< of GraspRoom at the end, beside the learned score there
   double no_contact = 0.5;   ///< no finger ever touches: doing nothing must never look good
@@ -91,7 +92,8 @@ PlanCost CalcPlanCost(const World& world, const PlanOutcome& outcome,
                       std::span<const double> stage_scores, double final_score, double room,
                       const CostWeights& weights, double force_scale, double score_scale);
 
-/// @param fragility  from 0 to 1. @param rest_reward  of doing nothing.
+/// Takes the share of a plan's gain over doing nothing that its fragility costs it.
+/// @param fragility  CalcFragility, from 0 to 1. @param rest_reward  of doing nothing.
 void AddFragility(PlanCost& cost, double fragility, const CostWeights& weights, double rest_reward);
 
 }  // namespace pregrasp
