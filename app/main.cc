@@ -1,11 +1,7 @@
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -16,6 +12,7 @@
 #include "app/commands/commands.h"
 #include "app/core/error.h"
 #include "app/core/interrupt.h"
+#include "app/core/standard_streams.h"
 #include "app/core/text.h"
 #include "app/recording/build_info.h"
 
@@ -33,27 +30,10 @@ int Fail(int code, const std::string& message) {
   return code;
 }
 
-// Files that are opened later must not become standard input, output or error: progress would be
-// written into them.
-void OpenStandardStreams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
-    if (open("/dev/null", O_RDWR) != stream) std::_Exit(kInternalError);  // the lowest that is free
-  }
-}
-
 // Whether a path that the user gave, or one below it, is such that nothing can be looked at there.
 bool IsOutOfReach(const std::error_code& code) {
   return code == std::errc::permission_denied || code == std::errc::not_a_directory ||
          code == std::errc::filename_too_long || code == std::errc::too_many_symbolic_link_levels;
-}
-
-// What was printed must have arrived: exit code 0 says so.
-int FinishOutput(int code) {
-  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (written || code != 0) return code;
-  return Fail(kInternalError, std::string("standard output: cannot be written: ") +
-                                  std::strerror(errno == 0 ? EIO : errno));
 }
 
 // "--out=" would take the next word for its value. What a script is given is the script's.
@@ -118,7 +98,10 @@ int main(int argc, char** argv) {
     OpenStandardStreams();
     InstallInterruptHandler();
     std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not end the work
-    return FinishOutput(Run(argc, argv));
+    const int code = Run(argc, argv);
+    if (FlushStandardOutput() || code != 0) return code;  // exit code 0 says that all has arrived
+    return Fail(kInternalError, std::string("standard output: cannot be written: ") +
+                                    std::strerror(errno == 0 ? EIO : errno));
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());
   } catch (const Interrupted& error) {

@@ -100,7 +100,8 @@ fs::path ItemFolder::PathOf(std::int64_t index) const {
 
 bool ItemFolder::Has(std::int64_t index) const { return fs::exists(PathOf(index)); }
 
-ItemFolders::ItemFolders(std::vector<fs::path> folders, std::string extension, std::string what)
+ItemFolders::ItemFolders(std::vector<fs::path> folders, std::string extension,
+                         const std::string& what)
     : folders_(std::move(folders)), extension_(std::move(extension)) {
   PREGRASP_CHECK(!folders_.empty());
   description_ = ReadWholeFile(folders_[0] / kDescriptionFile);

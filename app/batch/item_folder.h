@@ -50,7 +50,8 @@ class ItemFolders {
  public:
   /// @param what  of which the items are parts, for messages: "data set".
   /// @throws InputError if a folder has no description, or another than the first one.
-  ItemFolders(std::vector<std::filesystem::path> folders, std::string extension, std::string what);
+  ItemFolders(std::vector<std::filesystem::path> folders, std::string extension,
+              const std::string& what);
 
   const std::string& description() const { return description_; }
 

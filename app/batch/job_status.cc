@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/batch/item_folder.h"
 #include "app/core/error.h"
 
 namespace pregrasp {

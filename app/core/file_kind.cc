@@ -33,7 +33,7 @@ std::string DescribeNonFile(const fs::path& path) {
 }
 
 std::string NonFileClause(const fs::path& path) {
-  const std::string what = DescribeNonFile(path);
+  std::string what = DescribeNonFile(path);
   if (what.empty()) return what;
   if (what == kNoSuchFile) return "which does not exist";
   const std::string one_that = "one that ";

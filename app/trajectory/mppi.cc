@@ -29,6 +29,9 @@ TipFits MakeTipFits(const MppiProblem& problem) {
   };
 }
 
+// In the scene's own world alone.
+double CostHere(const PlanCost& cost) { return cost.total - cost.fragility; }
+
 }  // namespace
 
 Mppi::Mppi(const MppiProblem& problem, const MppiConfig& config)
@@ -231,15 +234,15 @@ void Mppi::Screen(MppiState& state, int iterations, ThreadPool& pool) const {
 // that do not must not crowd it out: the list holds the best by cost and the best by cost without
 // fragility.
 std::vector<MppiPlan>::iterator Mppi::FindLeastPromising(std::vector<MppiPlan>& plans) {
-  const auto bare = [](const MppiPlan& plan) { return plan.cost.total - plan.cost.fragility; };
   auto least = plans.end();
   std::ptrdiff_t least_rank = -1;
   for (auto plan = plans.begin(); plan != plans.end(); ++plan) {
     const std::ptrdiff_t by_cost = plan - plans.begin();  // they are in its order
-    const std::ptrdiff_t by_bare =
-        std::count_if(plans.begin(), plans.end(),
-                      [&](const MppiPlan& other) { return bare(other) < bare(*plan); });
-    const std::ptrdiff_t rank = std::min(by_cost, by_bare);
+    const std::ptrdiff_t by_cost_here =
+        std::count_if(plans.begin(), plans.end(), [&](const MppiPlan& other) {
+          return CostHere(other.cost) < CostHere(plan->cost);
+        });
+    const std::ptrdiff_t rank = std::min(by_cost, by_cost_here);
     if (rank < least_rank) continue;
     least = plan;
     least_rank = rank;
@@ -291,10 +294,11 @@ const char* MppiEndName(MppiEnd end) {
 }
 
 void Mppi::MoveMean(MppiState& state) const {
-  // Of the better half: what a certificate refuses costs so much that a few such plans would set
-  // the spread of all, and make the others alike.
+  // Without fragility, which would hold the mean back where every first step is fragile: what is
+  // robust is chosen among the plans. Of the better half: what a certificate refuses costs so much
+  // that a few such plans would set the spread of all, and make the others alike.
   std::vector<double> costs;
-  for (const MppiSample& sample : state.samples) costs.push_back(sample.cost.total);
+  for (const MppiSample& sample : state.samples) costs.push_back(CostHere(sample.cost));
   std::sort(costs.begin(), costs.end());
   const double lowest = costs.front();
   costs.resize((costs.size() + 1) / 2);
@@ -305,7 +309,7 @@ void Mppi::MoveMean(MppiState& state) const {
   const double lambda = config_.temperature * std::max(std::sqrt(variance), 1e-9);
   double sum = 0.0;
   for (MppiSample& sample : state.samples) {
-    sample.weight = std::exp(-(sample.cost.total - lowest) / lambda);
+    sample.weight = std::exp(-(CostHere(sample.cost) - lowest) / lambda);
     sum += sample.weight;
   }
   std::fill(state.mean.begin(), state.mean.end(), 0.0);

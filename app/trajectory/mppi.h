@@ -38,7 +38,7 @@ struct MppiConfig {
 struct MppiSample {
   std::vector<double> action;
   PlanCost cost;
-  double weight = 0.0;  ///< in the new mean
+  double weight = 0.0;  ///< in the new mean, by cost without fragility
   RigidTransform X_WO_end = RigidTransform::Identity();
 };
 

@@ -907,7 +907,7 @@ function Optimizer:shot(options) end
 ---@class Rollout
 ---@field number integer
 ---@field cost number
----@field weight number in the new mean
+---@field weight number in the new mean, by cost without fragility
 ---@field terms CostTerms
 ---@field X_WO Transform where the object ends
 ---@field stages RolloutStage[]? of rollout(number) alone

@@ -121,7 +121,7 @@ TEST_F(PlannerScriptTest, ScreeningTellsWhatAPathIsWorthAndStepsGoOnFromThere) {
     print(second.value >= first.value, second.score_scale == first.score_scale, second.rest_reward <= 3)
     print(o.iteration, o.best_cost, #o.best_history)
     o:step()  -- where plans are tried in other worlds, too, which takes of what they gain
-    local lost = 0.33 * math.max(second.best.reward - second.rest_reward, 0)
+    local lost = o.settings.fragility * math.max(second.best.reward - second.rest_reward, 0)
     print(o.iteration, o.best_cost <= second.best.total + lost, o.score_scale == first.score_scale, #o.best_history)
     print(second.best.room >= 0, second.best.hold >= 0, second.best.reward >= second.best.final_score)
     local _, refusal = pcall(o.screen, o)
