@@ -11,6 +11,7 @@
 
 #include "app/commands/commands.h"
 #include "app/core/error.h"
+#include "app/core/file_kind.h"
 #include "app/core/interrupt.h"
 #include "app/core/standard_streams.h"
 #include "app/core/text.h"
@@ -28,25 +29,6 @@ int Fail(int code, const std::string& message) {
   std::fflush(stdout);
   std::fprintf(stderr, "%s\n", OneLine(message).c_str());
   return code;
-}
-
-// Whether a path that the user gave, or one below it, is such that nothing can be looked at there.
-bool IsOutOfReach(const std::error_code& code) {
-  return code == std::errc::permission_denied || code == std::errc::not_a_directory ||
-         code == std::errc::filename_too_long || code == std::errc::too_many_symbolic_link_levels;
-}
-
-// "--out=" would take the next word for its value. What a script is given is the script's.
-void RequireValues(int argc, char** argv) {
-  int words = 0;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.rfind("-", 0) != 0) ++words;
-    if (words >= 2 && std::string(argv[1]) == "script") return;
-    if (word.rfind("--", 0) == 0 && word.find('=') == word.size() - 1) {
-      throw InputError("pregrasp", word.substr(0, word.size() - 1), "a value after =", "none");
-    }
-  }
 }
 
 int Run(int argc, char** argv) {

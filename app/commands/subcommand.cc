@@ -94,6 +94,18 @@ InputError RefuseCount(const CLI::App& app, const std::string& name, const std::
 
 }  // namespace
 
+void RequireValues(int argc, char** argv) {
+  int words = 0;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.rfind("-", 0) != 0) ++words;
+    if (words >= 2 && std::string(argv[1]) == "script") return;
+    if (word.rfind("--", 0) == 0 && word.find('=') == word.size() - 1) {
+      throw InputError("pregrasp", word.substr(0, word.size() - 1), "a value after =", "none");
+    }
+  }
+}
+
 std::string DescribeParseError(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
   std::string name = app.get_name();

@@ -63,6 +63,10 @@ class Subcommand {
   CLI::App* app_;
 };
 
+/// Throws InputError for "--out=", which would take the next word for its value. What a script is
+/// given is the script's.
+void RequireValues(int argc, char** argv);
+
 /// One line about a command line that cannot be taken: the command, what was expected, what came.
 /// @param app  the program, which has parsed up to there.
 std::string DescribeParseError(const CLI::App& app, const CLI::ParseError& error);

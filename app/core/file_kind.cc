@@ -41,4 +41,9 @@ std::string NonFileClause(const fs::path& path) {
   return "which is " + what;
 }
 
+bool IsOutOfReach(const std::error_code& code) {
+  return code == std::errc::permission_denied || code == std::errc::not_a_directory ||
+         code == std::errc::filename_too_long || code == std::errc::too_many_symbolic_link_levels;
+}
+
 }  // namespace pregrasp

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 namespace pregrasp {
 
@@ -11,5 +12,8 @@ std::string DescribeNonFile(const std::filesystem::path& path);
 
 /// The same as a clause behind the file's name: "which does not exist", "which is a folder".
 std::string NonFileClause(const std::filesystem::path& path);
+
+/// Whether a path that the user gave, or one below it, is such that nothing can be looked at there.
+bool IsOutOfReach(const std::error_code& code);
 
 }  // namespace pregrasp

@@ -65,7 +65,7 @@ double FindNearness(const SampledCloud& cloud) {
   const int n = static_cast<int>(cloud.P.rows());
   const int step = std::max(1, n / 400);
   double near = 0.06 * cloud.spacing;
-  for (; near < 0.4 * cloud.spacing; near *= 2.0) {
+  while (near < 0.4 * cloud.spacing) {
     std::vector<double> shares;
     for (int i = 0; i < n; i += step) {
       ThrowIfInterrupted();
@@ -74,6 +74,7 @@ double FindNearness(const SampledCloud& cloud) {
       shares.push_back(far.sum() / around.weight.tail(kCloudNeighbours / 2).sum());
     }
     if (Percentile(shares, 0.3) > 0.35) break;
+    near *= 2.0;
   }
   return near;
 }
@@ -134,7 +135,7 @@ void DropStrays(SampledCloud& cloud) {
     }
     if (alike >= 2) kept.push_back(i);
   }
-  if (2 * static_cast<int>(kept.size()) < cloud.P.rows()) return;
+  if (2 * std::ssize(kept) < cloud.P.rows()) return;
   cloud.P = TakeRows(cloud.P, kept);
   cloud.N = TakeRows(cloud.N, kept);
 }

@@ -141,7 +141,7 @@ void MeshFaces::ListNearEdges(int edge) {
 }
 
 // Straight on over the edges between triangles, as if they were unfolded.
-MeshFaces::Walk MeshFaces::WalkOver(Place from, Vector3 along, double length) const {
+MeshFaces::Walk MeshFaces::WalkOver(const Place& from, Vector3 along, double length) const {
   Walk walk{from};
   for (int crossing = 0; crossing < kMaxCrossings; ++crossing) {
     const Triangle& t = triangles_[walk.end.triangle];

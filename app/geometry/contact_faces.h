@@ -69,7 +69,7 @@ class MeshFaces {
 
   void FindEdges(const std::vector<std::array<int, 3>>& neighbours);
   void ListNearEdges(int edge);
-  Walk WalkOver(Place from, Vector3 along, double length) const;
+  Walk WalkOver(const Place& from, Vector3 along, double length) const;
   Vector3 DirectionInward(const Edge& edge, const Place& place, const Vector3& p_edge) const;
   static double CalcWayInside(const Walk& across, double distance);
   bool MoveInside(Place& place) const;

@@ -183,6 +183,7 @@ std::vector<Hole> FindHoles(const TriangleMesh& mesh) {
     for (const int v : {a, b}) hole.bounds.extend(Vector3(mesh.V.row(v)));
   }
   std::vector<Hole> list;
+  list.reserve(holes.size());
   for (const auto& [root, hole] : holes) list.push_back(hole);
   std::stable_sort(list.begin(), list.end(),
                    [](const Hole& a, const Hole& b) { return a.edges > b.edges; });

@@ -54,6 +54,7 @@ double CalcDepth(const Leaf& a, const Leaf& b) {
   const RigidTransform X_BA = b.X_WP.inverse() * a.X_WP;
   const auto distance_at = [&](const Vector3& p_A) { return b.distance.Calc(X_BA * p_A); };
   std::vector<std::pair<double, int>> order;
+  order.reserve(a.samples.rows());
   for (int i = 0; i < a.samples.rows(); ++i) order.emplace_back(distance_at(a.samples.row(i)), i);
   std::sort(order.begin(), order.end());
   constexpr std::size_t kStarts = 12;

@@ -117,6 +117,7 @@ TriangleMesh ParseOff(std::string_view bytes) {
     if (line.empty()) Fail(fmt::format("has {} of {} faces", f, num_faces));
     const std::vector<int> corners = ReadFace(line, vertices.size());
     std::vector<Vector3> points;
+    points.reserve(corners.size());
     for (const int corner : corners) points.push_back(vertices[static_cast<std::size_t>(corner)]);
     for (const std::array<int, 3>& triangle : TriangulatePolygon(points)) {
       faces.push_back({corners[static_cast<std::size_t>(triangle[0])],

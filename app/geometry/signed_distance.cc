@@ -192,8 +192,8 @@ FacePoint PartsDistance::ProjectToFace(const Vector3& p_B) const {
   constexpr double kFirst = 1e-3, kLast = 0.2;  // [m]
   for (double reach = kFirst; std::isinf(squared) && reach < kLast; reach *= 2.0) {
     for (int i = 0; i < 27; ++i) {
-      const Vector3 step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-      OfferFaces(surface_B + reach * step, p_B, &squared, &best);
+      const Eigen::Vector3i step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      OfferFaces(surface_B + reach * step.cast<double>(), p_B, &squared, &best);
     }
   }
   return best;

@@ -278,6 +278,7 @@ class Collapser {
 
 TriangleMesh SplitLongEdges(const TriangleMesh& mesh, double max_edge) {
   std::vector<Vector3> points;
+  points.reserve(mesh.V.rows());
   for (int v = 0; v < mesh.V.rows(); ++v) points.emplace_back(mesh.V.row(v));
   std::vector<std::array<int, 3>> faces;
   std::map<std::pair<int, int>, std::array<int, 2>> faces_at;  // an edge's two faces

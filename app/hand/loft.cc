@@ -101,8 +101,9 @@ TriangleMesh Ear(double x0, double x1, double z, double radius, double z_foot) {
   const auto outline = [&](double x, double inset) {
     std::vector<Vector3> ring;
     const double r = radius - inset;
-    for (int s = 0; s <= kSegments / 2; ++s) {
-      const double a = kPi * s / (kSegments / 2);
+    constexpr int kHalf = kSegments / 2;
+    for (int s = 0; s <= kHalf; ++s) {
+      const double a = kPi * s / kHalf;
       ring.emplace_back(x, up * r * std::cos(a), z + up * r * std::sin(a));
     }
     ring.emplace_back(x, -up * r, z_foot);

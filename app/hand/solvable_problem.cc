@@ -190,7 +190,8 @@ class Closer {
   std::optional<IkContact> Close(Finger finger, const HandJoints& closed,
                                  HandConfiguration* configuration) const {
     constexpr int kSteps = 40;
-    const auto [first, count] = hand_.fingers[static_cast<int>(finger)];
+    const auto& joints = hand_.fingers[static_cast<int>(finger)];
+    const int first = joints.first, count = joints.count;
     const HandJoints open = configuration->q;
     const auto at = [&](double s) {
       HandConfiguration moved = *configuration;

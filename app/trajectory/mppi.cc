@@ -238,10 +238,9 @@ std::vector<MppiPlan>::iterator Mppi::FindLeastPromising(std::vector<MppiPlan>& 
   std::ptrdiff_t least_rank = -1;
   for (auto plan = plans.begin(); plan != plans.end(); ++plan) {
     const std::ptrdiff_t by_cost = plan - plans.begin();  // they are in its order
-    const std::ptrdiff_t by_cost_here =
-        std::count_if(plans.begin(), plans.end(), [&](const MppiPlan& other) {
-          return CostHere(other.cost) < CostHere(plan->cost);
-        });
+    const std::ptrdiff_t by_cost_here = std::count_if(
+        plans.begin(), plans.end(),
+        [&](const MppiPlan& other) { return CostHere(other.cost) < CostHere(plan->cost); });
     const std::ptrdiff_t rank = std::min(by_cost, by_cost_here);
     if (rank < least_rank) continue;
     least = plan;
