@@ -81,7 +81,7 @@ RunSteps::RunSteps(std::vector<const StepFacts*> steps, const StepFacts& end,
                    const FactsSource& source)
     : steps_(std::move(steps)), source_(source), end_(&end) {
   for (const StepFacts* step : steps_) {
-    number_of_.emplace(step, static_cast<int>(number_of_.size()));
+    number_of_.emplace(step, static_cast<int>(number_of_.size()) + 1);
   }
   for (const StepFacts* at = end_;; at = &source_.Get(at->command.node)) {
     way_.push_back(at);

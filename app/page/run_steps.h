@@ -28,12 +28,14 @@ class RunSteps {
   /// Those that led to it, the start first.
   const std::vector<const StepFacts*>& way() const { return way_; }
   bool IsOnWay(const StepFacts& step) const { return on_way_.count(step.id) > 0; }
+  /// From 1, as LoadedRun::number_of.
   int NumberOf(const StepFacts& step) const { return number_of_.at(&step); }
 
   /// What the run is told by, in its order: verdicts on the start; key steps (IsKeyStep) on the
   /// way, with its grasp and lift, and where the way ends; and, from beside the way, the first
-  /// plan, the first grasp and the first lift that failed, where none on the way did. At most
-  /// `most`: of iterations and of keyframes those are taken that lie evenly.
+  /// plan, the first grasp and the first lift that failed, where none on the way did. The hand's
+  /// motion comes last and in time, whatever its keyframes were solved in. At most `most`: of
+  /// iterations and of keyframes those are taken that lie evenly.
   std::vector<const StepFacts*> FindStory(std::size_t most) const;
 
  private:

@@ -65,6 +65,19 @@ TEST_F(PageTest, ARunWithoutAPlanIsOneFileThatNeedsNoOtherAndIsMadeAlike) {
   EXPECT_NE(page.find("no plan"), std::string::npos);
 }
 
+TEST_F(PageTest, AStepHasOneNumberInAllPartsOfThePage) {
+  const LoadedRun run = MakeRun(run_);
+  const RunSteps steps(run);
+  for (const StepFacts& step : run.steps) {
+    EXPECT_EQ(steps.NumberOf(step), run.number_of.at(step.id)) << step.id;
+  }
+  // What it says in short of the last step leads to that step.
+  const std::string page = MakePage(run), last = std::to_string(run.steps.size());
+  EXPECT_NE(page.find("href=\"#row-" + last + "\" data-step=\"" + last + "\">" +
+                      run.steps.back().id + "</a>"),
+            std::string::npos);
+}
+
 TEST_F(PageTest, AnInterruptedRunHasAPageThatSaysSo) {
   const std::string page = MakePage(MakeRun(run_, "interrupted"));
   EXPECT_NE(page.find("<span class=\"badge bad\">interrupted</span>"), std::string::npos);
