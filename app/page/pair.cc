@@ -133,7 +133,9 @@ FirstDifference FindFirstDifference(const LoadedRun& left, const LoadedRun& righ
   comparison.CompareRuns(left.directory, right.directory);
   if (!comparison.first()) return {"Every step and every file the same.", nullptr, nullptr};
   RunDifference first = *comparison.first();
-  first.value.field = DescribeField(first.value.field);
+  first.value = {DescribeField(first.value.field),
+                 DescribeValue(first.value.left, first.value.right),
+                 DescribeValue(first.value.right, first.value.left), first.value.distance};
   FirstDifference difference{"The first difference: " + first.Sentence("A", "B") + ".", nullptr,
                              nullptr};
   // Steps are compared line by line, and named by the right one's id; where one run has more, the

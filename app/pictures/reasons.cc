@@ -435,6 +435,13 @@ std::vector<std::pair<std::string, std::string>> RowsOf(const Scene& scene, cons
   return rows;
 }
 
+// "the object: place, x [m]: -0.1155 and -0.12".
+std::string ShowDifference(const FactsDifference& difference) {
+  return fmt::format("{}: {} and {}", DescribeField(difference.field),
+                     OneLine(DescribeValue(difference.left, difference.right)),
+                     OneLine(DescribeValue(difference.right, difference.left)));
+}
+
 }  // namespace
 
 Explanation ExplainDifference(const BranchComparison& comparison, const Scene& left_scene,
@@ -450,8 +457,7 @@ Explanation ExplainDifference(const BranchComparison& comparison, const Scene& l
   }
   why.verdict = "differ";
   if (comparison.scene) {
-    why.text = fmt::format("The scenes differ in {}: {} and {}. ", comparison.scene->field,
-                           OneLine(comparison.scene->left), OneLine(comparison.scene->right));
+    why.text = fmt::format("The scenes differ in {}. ", ShowDifference(*comparison.scene));
   }
   why.text += comparison.common == nullptr
                   ? "They differ from the start"
@@ -474,8 +480,7 @@ Explanation ExplainDifference(const BranchComparison& comparison, const Scene& l
     }
     if (comparison.facts) {
       why.text +=
-          fmt::format("; what first differs of them is {}: {} and {}", comparison.facts->field,
-                      OneLine(comparison.facts->left), OneLine(comparison.facts->right));
+          fmt::format("; what first differs of them is {}", ShowDifference(*comparison.facts));
     } else if (comparison.left->command.verb == comparison.right->command.verb) {
       why.text += "; what came of them is the same";
     }

@@ -82,42 +82,6 @@ std::string DescribeRowDifferences(const std::vector<std::string>& left,
   return text;
 }
 
-std::string DescribeField(const std::string& field) {
-  static const std::map<std::string, std::string> kWords = {
-      {"t", "time [s]"},
-      {"details.best_cost", "best cost"},
-      {"details.clearance_mm", "clearance [mm]"},
-      {"details.height_m", "height lifted [m]"},
-      {"details.hold_shift_mm", "moves while held [mm]"},
-      {"details.hold_turn_deg", "turns while held [deg]"},
-      {"details.margin", "margin"},
-      {"details.max_force_N", "largest force [N]"},
-      {"details.max_speed", "largest speed [m/s]"},
-      {"details.mean_cost", "mean cost"},
-      {"details.min_clearance_mm", "least clearance [mm]"},
-      {"details.min_normal_N", "least normal force [N]"},
-      {"details.moved_mm", "moved [mm]"},
-      {"details.mu", "friction of fingertips"},
-      {"details.mu_star", "friction up to which the proof holds"},
-      {"details.physics_steps", "physics steps"},
-      {"details.released_shift_mm", "moves if released [mm]"},
-      {"details.released_turn_deg", "turns if released [deg]"},
-      {"details.rest_reward", "worth of doing nothing"},
-      {"details.rotated_deg", "turned [deg]"},
-      {"details.score", "score"},
-      {"details.score_scale", "weight of the terms that break ties"},
-      {"details.shift_mm", "off its way [mm]"},
-      {"details.slip_mm", "fingertips slid [mm]"},
-      {"details.step_shift_mm", "elsewhere at half the step [mm]"},
-      {"details.step_turn_deg", "turned elsewhere at half the step [deg]"},
-      {"details.tip_error_mm", "tip error [mm]"},
-      {"details.max_tip_error_mm", "largest tip error [mm]"},
-      {"details.turn_deg", "turned off its way [deg]"},
-      {"details.value", "worth"}};
-  const auto found = kWords.find(field);
-  return found == kWords.end() ? field : found->second;
-}
-
 std::vector<std::string> DescribeStep(const Scene& scene, const StepFacts& step,
                                       const FactsSource& steps) {
   switch (step.command.verb) {

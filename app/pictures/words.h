@@ -24,8 +24,13 @@ std::string DescribeRowDifferences(const std::vector<std::string>& left,
                                    const std::vector<std::string>& right, std::size_t most);
 
 /// A field of a step as cards and tables name it, with its unit: "details.max_force_N" is "largest
-/// force [N]". The field itself where they have no words for it.
+/// force [N]", "bodies[0].p_WB[1]" is "the object: place, y [m]". What has no words of its own is
+/// spelt out.
 std::string DescribeField(const std::string& field);
+
+/// One of two values that differ, as FormatJson has them: of numbers four digits, or as many as
+/// tell it from the other.
+std::string DescribeValue(const std::string& value, const std::string& other);
 
 /// Why a node is in the graph or not, in one sentence.
 std::string DescribeReason(const NodeReason& reason);
