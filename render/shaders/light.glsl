@@ -37,11 +37,15 @@ vec3 Lit(vec3 p, vec3 n, vec3 albedo, float roughness, float metallic, float sha
   return light;
 }
 
-// Linear light to sRGB, with a shoulder above .7 that keeps highlights from clipping.
+// Linear light to sRGB.
+vec3 Encode(vec3 c) {
+  return mix(12.92 * c, 1.055 * pow(max(c, 1e-6), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+
+// The same, with a shoulder above .7 that keeps highlights from clipping.
 vec3 Display(vec3 c) {
   vec3 over = max(c - 0.7, 0.0);
-  c = min(c, 0.7) + 0.3 * over / (0.3 + over);
-  return mix(12.92 * c, 1.055 * pow(max(c, 1e-6), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+  return Encode(min(c, 0.7) + 0.3 * over / (0.3 + over));
 }
 
 vec3 Background(float height) {  // 0 at the picture's lower edge, 1 at the upper

@@ -19,5 +19,11 @@ void main() {
     float fade = smoothstep(0.02, 0.2, dot(n, to_light.xyz));
     shadow = fade * Shadow(fade > 0.0, v_p, face);
   }
+  if (v_surface.z >= 0.0) {
+    // A legend says what these colours mean: light may shade them a little, never to another one.
+    vec3 light = Lit(v_p, n, vec3(0.6), 1.0, 0.0, shadow, open);
+    pixel = vec4(Encode(albedo * (0.8 + 0.2 * min(light.g / 0.5, 1.0))), 1.0);
+    return;
+  }
   pixel = vec4(Display(Lit(v_p, n, albedo, v_surface.x, v_surface.y, shadow, open)), 1.0);
 }
