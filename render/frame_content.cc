@@ -92,6 +92,9 @@ class Collector {
     Instance instance = MakeInstance(Eigen::Affine3d(body.X_WB), body.color);
     instance.roughness = std::clamp(body.roughness, 0.0F, 1.0F);
     instance.metallic = std::clamp(body.metallic, 0.0F, 1.0F);
+    draw.outline = body.shading == Shading::kOutline;
+    constexpr float kOutlineFilled = 0.07F;
+    if (draw.outline) instance.color[3] *= kOutlineFilled;
     if (!body.face_colors.empty()) instance.first_color = AddFaceColors(body, index);
     draw.color = body.color;
     draw.material = {instance.roughness, instance.metallic, instance.first_color, 0.0F};
@@ -110,8 +113,7 @@ class Collector {
       content_.solids.push_back(draw);
       content_.solid_bounds_W.push_back(box_W);
     } else {
-      auto& list = body.shading == Shading::kGhost ? content_.ghosts : content_.overlays;
-      list.push_back(draw);
+      content_.ghosts.push_back(draw);
     }
   }
 

@@ -21,6 +21,7 @@ struct Draw {
   std::array<float, 16> X_WB{};     ///< for its edges; column-major
   const GpuEdges* all_edges = nullptr;
   const GpuEdges* creases = nullptr;
+  bool outline = false;  ///< of a ghost: its edges have its own colour
 };
 
 /// A piece of a line as line_vert.glsl reads it.
@@ -37,7 +38,6 @@ struct FrameContent {
   std::vector<Draw> arrows;       ///< the part of the annotations that shines through bodies
   std::vector<Draw> ghosts;       ///< farthest first
   std::vector<Draw> cones;        ///< farthest first
-  std::vector<Draw> overlays;
   std::vector<LinePiece> lines;
   std::vector<Eigen::AlignedBox3d> solid_bounds_W;
 };

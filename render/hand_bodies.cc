@@ -1,5 +1,7 @@
 #include "render/hand_bodies.h"
 
+#include <algorithm>
+
 #include "app/hand/hand_shapes.h"
 #include "render/palette.h"
 
@@ -15,7 +17,8 @@ Rgba WithoutHue(const Rgba& color) {
 }  // namespace
 
 void AddHand(RenderScene& scene, const HandModel& hand, const HandConfiguration& configuration,
-             const std::array<bool, kNumFingers>& touching) {
+             const std::array<bool, kNumFingers>& touching,
+             const std::vector<std::string>& marked_parts) {
   const auto X_WL = CalcLinkPoses(hand, configuration);
   for (const HandShape& shape : ShapesOf(hand)) {
     const auto& [r, g, b, a] = shape.rgba;
@@ -23,6 +26,11 @@ void AddHand(RenderScene& scene, const HandModel& hand, const HandConfiguration&
     if (const std::optional<Finger> finger = hand.FingerOf(shape.link)) {
       color = touching[static_cast<int>(*finger)] ? FingerColor(*finger) : WithoutHue(color);
     }
+    const std::string& link = hand.links[shape.link].name;
+    const bool marked = std::any_of(
+        marked_parts.begin(), marked_parts.end(),
+        [&](const std::string& part) { return part.substr(0, part.find('/')) == link; });
+    if (marked) color = BadColor();
     RenderBody body;
     body.mesh = shape.mesh;
     body.X_WB = X_WL[shape.link];

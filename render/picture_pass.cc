@@ -73,13 +73,10 @@ PicturePass::PicturePass()
       depth_({"frame", "mesh_vert"}, {"depth_frag"}),
       background_({"screen_vert"}, {"frame", "light", "background_frag"}),
       ghost_({"frame", "mesh_vert"}, {"frame", "light", "ghost_frag"}, {"TRANSLUCENT"}),
-      flat_({"frame", "mesh_vert"}, {"frame", "light", "ghost_frag"}, {"TRANSLUCENT", "FLAT"}),
       line_({"frame", "line_vert"}, {"frame", "light", "line_frag"}),
       edge_({"frame", "edge_vert"}, {"frame", "light", "edge_frag"}) {
-  for (const GlProgram* program : {&ghost_, &flat_}) {
-    program->Use();
-    program->SetSampler("face_colors", kFaceColors);
-  }
+  ghost_.Use();
+  ghost_.SetSampler("face_colors", kFaceColors);
 }
 
 const PicturePass::Lighting& PicturePass::LightingOf(RenderQuality quality) {
@@ -117,7 +114,6 @@ void PicturePass::Run(const FrameContent& content, const FrameData& data, Render
   DrawGhosts(content);
   DrawCones(content);
   DrawLines(content, data);
-  DrawOverlays(content);
 }
 
 // Depths first: lighting costs far more than geometry, and is then paid once a pixel.
@@ -180,8 +176,9 @@ void PicturePass::DrawGhosts(const FrameContent& content) const {
     SetDepth(GL_EQUAL, false);
     DrawSurface(draw);
     SetDepth(GL_GREATER, false);
-    DrawPlainEdges(draw, draw.all_edges != nullptr ? draw.all_edges : draw.creases,
-                   Darker(draw.color, 0.6F, std::min(1.0F, 1.8F * draw.color.a)));
+    DrawPlainEdges(
+        draw, draw.all_edges != nullptr ? draw.all_edges : draw.creases,
+        draw.outline ? draw.color : Darker(draw.color, 0.6F, std::min(1.0F, 1.8F * draw.color.a)));
   }
 }
 
@@ -209,28 +206,6 @@ void PicturePass::DrawLines(const FrameContent& content, const FrameData& data) 
   gl.BindVertexArray(data.lines().get());
   SetDepth(GL_GREATER, false);
   gl.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(content.lines.size()));
-}
-
-// Over everything else, but among themselves the nearest layer hides the rest.
-void PicturePass::DrawOverlays(const FrameContent& content) const {
-  if (content.overlays.empty()) return;
-  ClearDepth(0.0F);
-  flat_.Use();
-  gl.Uniform1f(flat_.uniform("strength"), 1.0F);
-  for (const bool color : {false, true}) {
-    SetColorWrites(color);
-    SetDepth(color ? GL_EQUAL : GL_GREATER, !color);
-    float nearer = 0.0F;
-    for (const Draw& draw : content.overlays) {
-      nearer += kCoplanarStep;
-      gl.Uniform1f(flat_.uniform("nearer"), nearer);
-      DrawSurface(draw);
-    }
-  }
-  SetDepth(GL_GREATER, false);
-  for (const Draw& draw : content.overlays) {
-    DrawPlainEdges(draw, draw.all_edges, Darker(draw.color, 0.4F, draw.color.a));
-  }
 }
 
 void PicturePass::DrawPlainEdges(const Draw& draw, const GpuEdges* edges, const Rgba& color) const {

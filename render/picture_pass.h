@@ -25,7 +25,7 @@ struct TileView {
   int width = 0, height = 0;  ///< of the picture
 };
 
-/// Draws what is seen: lit bodies and floor, edges, then what is translucent, then overlays. Needs
+/// Draws what is seen: lit bodies and floor, edges, then what is translucent. Needs
 /// the maps that ShadowPass and, for stills, OcclusionPass leave bound.
 class PicturePass {
  public:
@@ -48,11 +48,10 @@ class PicturePass {
   void DrawGhosts(const FrameContent& content) const;
   void DrawCones(const FrameContent& content) const;
   void DrawLines(const FrameContent& content, const FrameData& data) const;
-  void DrawOverlays(const FrameContent& content) const;
   void DrawPlainEdges(const Draw& draw, const GpuEdges* edges, const Rgba& color) const;
 
   GlVertexArray empty_;
-  GlProgram depth_, background_, ghost_, flat_, line_, edge_;
+  GlProgram depth_, background_, ghost_, line_, edge_;
   std::array<std::unique_ptr<Lighting>, 3> lighting_;
 };
 

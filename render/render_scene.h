@@ -17,8 +17,9 @@ struct Rgba {
 };
 
 enum class Shading {
-  kSolid,  ///< lit, casts and receives shadows
-  kGhost,  ///< translucent, unshadowed: another time or an alternative
+  kSolid,    ///< lit, casts and receives shadows
+  kGhost,    ///< translucent, unshadowed: another time or an alternative
+  kOutline,  ///< hardly filled, its sharp edges and silhouette: one of many alternatives
 };
 
 /// One mesh placed in the world. Meshes are shared, never change once they are here, and are cached
