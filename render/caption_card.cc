@@ -167,7 +167,7 @@ namespace {
 // The first of these corners, unless at another one a card hides clearly less.
 Rect ChooseCorner(const Vector2& size, const std::vector<Vector2>& corners, double margin,
                   const CardArea& area) {
-  constexpr double kClearly = 0.015;  // of the card
+  constexpr double kClearly = 0.005;  // of the card
   std::optional<Rect> best;
   double covered = 0.0;
   for (const Vector2& corner : corners) {
