@@ -137,7 +137,8 @@ int ShowStep(const ShowOptions& options) {
     const RunSteps steps(run);
     std::vector<const StepFacts*> story = steps.FindStory(run.steps.size());
     story.push_back(&step);
-    shot.config.camera = drawer.FrameSteps(story, run, shot.config);
+    shot.config.camera =
+        drawer.FrameOnWay(drawer.FrameSteps(story, run, shot.config), step, run, shot.config);
   } else if (view) {
     shot.config.camera = drawer.FrameSteps({&step}, run, shot.config, view);
   }

@@ -1,6 +1,7 @@
 #include "app/page/run_steps.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "app/core/error.h"
 #include "app/pictures/overlay.h"
@@ -136,8 +137,13 @@ std::vector<const StepFacts*> RunSteps::FindStory(std::size_t most) const {
     told.insert(some.begin(), some.end());
   }
   std::vector<const StepFacts*> story(told.begin(), told.end());
+  // The motion comes last and in time, in whatever order its keyframes were solved.
+  const auto place = [this](const StepFacts* step) {
+    const bool moves = std::holds_alternative<FrameFacts>(step->details);
+    return std::tuple(moves, moves ? step->t : 0.0, NumberOf(*step));
+  };
   std::sort(story.begin(), story.end(),
-            [this](const StepFacts* a, const StepFacts* b) { return NumberOf(*a) < NumberOf(*b); });
+            [&](const StepFacts* a, const StepFacts* b) { return place(a) < place(b); });
   return TakeEvenly(story, most);
 }
 

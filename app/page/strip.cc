@@ -71,7 +71,8 @@ std::vector<PictureGrid::Cell> MakeCells(const std::vector<StripStep>& steps, co
                                          const std::optional<Vector3>& view) {
   Shot one = shot;
   one.config.card = one.config.footer = false;
-  if (!one.config.camera) {
+  const bool framed = !one.config.camera;
+  if (framed) {
     one.config.width = 1600;  // of any picture of 16:9
     one.config.height = 900;
     one.config.camera = FrameStrip(steps, one.config, view);
@@ -82,8 +83,13 @@ std::vector<PictureGrid::Cell> MakeCells(const std::vector<StripStep>& steps, co
     if (each.step == nullptr) continue;
     cell.title = fmt::format("{}   t = {:.2f} s", each.step->id, each.step->t);
     cell.sentence = Sentence(DescribeStep(each.drawer->scene(), *each.step, *each.steps));
-    cell.draw = [each, one](int width, int height) {
-      Shot shot_of_cell = one;
+    Shot own = one;
+    if (framed) {
+      own.config.camera =
+          each.drawer->FrameOnWay(*one.config.camera, *each.step, *each.steps, one.config, view);
+    }
+    cell.draw = [each, own](int width, int height) {
+      Shot shot_of_cell = own;
       shot_of_cell.config.width = width;
       shot_of_cell.config.height = height;
       return each.drawer->Render(*each.step, *each.steps, shot_of_cell);

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
+#include <utility>
 
 #include "app/hand/hand_shapes.h"
 #include "render/palette.h"
@@ -13,16 +16,31 @@ namespace {
 
 constexpr int kGhostsShown = 6;  // of an iteration's rollouts: the best
 
-// A scale of scores from 0 to the largest one, in three numbers.
+// A scale of scores in three numbers, of as many digits as tell them apart.
 RenderLegend ScoreLegend(const std::string& title, double low, double high) {
   RenderLegend legend;
   legend.title = title;
   constexpr int kSteps = 9;
   for (int i = 0; i < kSteps; ++i) legend.scale.push_back(ScoreColor(i / (kSteps - 1.0)));
+  constexpr int kMostDigits = 6;
+  int digits = 2;
+  while (digits < kMostDigits && std::abs(high - low) < 4.0 * std::pow(10.0, -digits)) ++digits;
   for (const double s : {0.0, 0.5, 1.0}) {
-    legend.ticks.emplace_back(s, fmt::format("{:.2f}", low + s * (high - low)));
+    legend.ticks.emplace_back(s, fmt::format("{:.{}f}", low + s * (high - low) + 0.0, digits));
   }
   return legend;
+}
+
+Rgba Mixed(const Rgba& a, const Rgba& b, float share_of_b) {
+  const float share = 1.0F - share_of_b;
+  return {share * a.r + share_of_b * b.r, share * a.g + share_of_b * b.g,
+          share * a.b + share_of_b * b.b, 1.0F};
+}
+
+double LengthOf(const std::vector<Vector3>& way) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < way.size(); ++i) length += (way[i] - way[i - 1]).norm();
+  return length;
 }
 
 void AppendHand(MatrixX3& points, const HandModel& hand, const HandConfiguration& configuration) {
@@ -53,24 +71,84 @@ class Maker {
   PictureOverlay Show(const ScoreFacts& scores) const {
     std::vector<int> all(scores.s_c.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-    return ShowScores(scores, all);
+    return ShowScores(scores.s_c, all, "best score here");
   }
 
+  // A cut by the picture of what it cuts by, the whole graph by who stayed.
   PictureOverlay Show(const PruneFacts& pruning) const {
-    return ShowScores(*steps_.FindBefore<ScoreFacts>(step_), pruning.kept);
+    const ScoreFacts& scores = *steps_.FindBefore<ScoreFacts>(step_);
+    if (pruning.complete || pruning.cut == "edges") return ShowKept(pruning);
+    return pruning.cut == "free"
+               ? ShowScores(scores.s_n, pruning.kept, "best score without surroundings")
+               : ShowScores(scores.s_c, pruning.kept, "best score here");
   }
 
+  // Which triangles are used by a state that a path may begin with, which by later ones only.
+  PictureOverlay ShowKept(const PruneFacts& pruning) const {
+    PictureOverlay overlay = ShowMesh(*steps_.FindBefore<MeshFacts>(step_));
+    const int count = static_cast<int>(overlay.face_colors.size());
+    const Rgba pruned = WithAlpha(NeutralColor(), 1.0F), later = WithAlpha(NeighbourColor(), 1.0F),
+               begins = WithAlpha(ObjectColor(), 1.0F);
+    std::vector<int> use(count, 0);
+    for (const auto& [nodes, rank] :
+         {std::pair(&pruning.kept, 1), std::pair(&pruning.initial, 2)}) {
+      for (const int node : *nodes) {
+        for (const int t : {node / count, node % count}) use[t] = std::max(use[t], rank);
+      }
+    }
+    int triangles[3] = {0, 0, 0};
+    for (int t = 0; t < count; ++t) {
+      overlay.face_colors[t] = use[t] == 2 ? begins : use[t] == 1 ? later : pruned;
+      ++triangles[use[t]];
+    }
+    overlay.legend.title = fmt::format("{} triangles, by the states that use them", count);
+    overlay.legend.swatches = {
+        {begins, fmt::format("{}: a path may begin there", triangles[2])},
+        {later, fmt::format("{}: only later on a path", triangles[1])},
+        {pruned, fmt::format("{}: all their states are pruned", triangles[0])}};
+    return overlay;
+  }
+
+  // Of each finger the triangles, by stage.
   PictureOverlay Show(const PathFacts& path) const {
     PictureOverlay overlay = ShowMesh(*steps_.FindBefore<MeshFacts>(step_));
-    for (const NodeFacts& node : path.nodes) {
-      overlay.face_colors[node.thumb] = FingerColor(Finger::kThumb);
-      overlay.face_colors[node.index] = FingerColor(Finger::kIndex);
+    constexpr float kPaler = 0.45F;  // in the last stage
+    struct Use {
+      std::string text;
+      Rgba color;
+      int count = 0;
+    };
+    std::map<int, Use> uses;  // by triangle
+    for (const Finger finger : {Finger::kThumb, Finger::kIndex}) {
+      std::map<int, std::string> stages;
+      std::map<int, Rgba> colors;
+      for (std::size_t i = 0; i < path.nodes.size(); ++i) {
+        const NodeFacts& node = path.nodes[i];
+        const int t = finger == Finger::kThumb ? node.thumb : node.index;
+        stages[t] += (stages[t].empty() ? "" : "+") + std::to_string(i + 1);
+        const float share = path.nodes.size() > 1 ? kPaler * static_cast<float>(i) /
+                                                        static_cast<float>(path.nodes.size() - 1)
+                                                  : 0.0F;
+        colors.emplace(t, Mixed(FingerColor(finger), {1.0F, 1.0F, 1.0F, 1.0F}, share));
+      }
+      for (const auto& [t, text] : stages) {
+        Use& use = uses[t];
+        use.color = use.count++ == 0 ? colors[t] : Mixed(use.color, colors[t], 0.5F);
+        use.text += fmt::format("{}{} {}", use.text.empty() ? "" : ", ", FingerName(finger), text);
+      }
     }
+    for (const auto& [t, use] : uses) {
+      overlay.face_colors[t] = use.color;
+      overlay.triangle_labels.push_back({t, fmt::format("{}: {}", use.text, t), use.color});
+    }
+    overlay.legend.title = path.nodes.size() > 1 ? "finger, stages: triangle; later ones paler"
+                                                 : "finger, stage: triangle";
     overlay.legend.swatches = {{FingerColor(Finger::kThumb), "thumb may touch"},
                                {FingerColor(Finger::kIndex), "index may touch"}};
     return overlay;
   }
 
+  // The object is where the best plan so far leaves it; outlines are the best of this iteration.
   PictureOverlay Show(const IterationFacts& iteration) const {
     std::vector<const RolloutFacts*> best;
     for (const RolloutFacts& rollout : iteration.rollouts) best.push_back(&rollout);
@@ -81,19 +159,85 @@ class Maker {
     PictureOverlay overlay;
     overlay.forces = false;
     const double low = best.front()->cost.total, high = best.back()->cost.total;
+    constexpr double kSame = 1e-6;  // [m], from the object itself
     for (const RolloutFacts* rollout : best) {
       const double s = high > low ? (high - rollout->cost.total) / (high - low) : 1.0;
-      overlay.ghosts.push_back(
-          {MakeTransform(rollout->q_WO_end, rollout->p_WO_end), WithAlpha(ScoreColor(s), 0.45F)});
+      const RigidTransform X_WO = MakeTransform(rollout->q_WO_end, rollout->p_WO_end);
+      if ((X_WO.matrix() - step_.object().X_WB().matrix()).cwiseAbs().maxCoeff() < kSame) continue;
+      overlay.ghosts.push_back({X_WO, WithAlpha(ScoreColor(s), 1.0F)});
     }
-    overlay.legend = ScoreLegend("cost", high, low);
+    overlay.legend = ScoreLegend(
+        fmt::format("{} best of {} plans, by cost", best.size(), iteration.rollouts.size()), high,
+        low);
+    overlay.legend.swatches = {{ObjectColor(), "best plan so far, and its start"}};
+    if (const RolloutFacts* plan = FindBestPlan(iteration)) ShowContacts(overlay, plan->stages);
+    return overlay;
+  }
+
+  // Null where the iteration that found it is not among the steps.
+  const RolloutFacts* FindBestPlan(const IterationFacts& last) const {
+    for (const StepFacts* at = &step_;; at = &steps_.Get(at->command.node)) {
+      const auto* iteration = std::get_if<IterationFacts>(&at->details);
+      if (iteration == nullptr || iteration->path != last.path) return nullptr;
+      for (const RolloutFacts& rollout : iteration->rollouts) {
+        if (rollout.cost.total == last.best.total) return &rollout;
+      }
+      if (at->command.node.empty()) return nullptr;
+    }
+  }
+
+  // Where a plan's fingers touch the object, at its start.
+  void ShowContacts(PictureOverlay& overlay, const std::vector<StageFacts>& stages) const {
+    const RigidTransform X_WO = FindStart(step_, steps_).object().X_WB();
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      for (const StageFingerFacts& finger : stages[i]) {
+        if (!finger.on || (finger.kept && i > 0)) continue;
+        overlay.ways.push_back({finger.finger,
+                                {X_WO * finger.p_OC},
+                                fmt::format("stage {}: {}", i + 1, FingerName(finger.finger))});
+      }
+    }
+  }
+
+  // Where the targets of the fingers' forces go: what moves the object.
+  PictureOverlay Show(const CertifyFacts& plan) const {
+    PictureOverlay overlay;
+    const RigidTransform X_WO = FindStart(step_, steps_).object().X_WB();
+    for (std::size_t i = 0; i < plan.stages.size(); ++i) {
+      for (const StageFingerFacts& finger : plan.stages[i]) {
+        if (!finger.on || finger.p_WTargets.empty()) continue;
+        PictureOverlay::Way way{finger.finger, {}, ""};
+        if (i == 0) way.p_W.push_back(X_WO * finger.p_OC);
+        way.p_W.insert(way.p_W.end(), finger.p_WTargets.begin(), finger.p_WTargets.end());
+        constexpr double kShortest = 2e-3;  // [m], worth showing
+        const double length = LengthOf(way.p_W);
+        if (length < kShortest) continue;
+        way.name = fmt::format("stage {}: {} target, {:.0f} mm", i + 1, FingerName(finger.finger),
+                               1e3 * length);
+        overlay.ways.push_back(way);
+      }
+    }
     return overlay;
   }
 
   PictureOverlay Show(const GraspFacts& grasp) const {
     PictureOverlay overlay;
-    for (const GraspContactFacts& contact : grasp.contacts) Touch(overlay, contact.finger);
+    AddContacts(overlay, grasp.contacts, grasp.feasible || grasp.hand);
     if (grasp.hand) SetHand(overlay, *grasp.hand);
+    if (!grasp.feasible) overlay.colliding = grasp.colliding;
+    return overlay;
+  }
+
+  // A lift that was not simulated, as its grasp gives way, shows that grasp.
+  PictureOverlay Show(const LiftFacts& lift) const {
+    PictureOverlay overlay;
+    const StepFacts* at = &step_;
+    while (at->command.verb != Verb::kCertify && !at->command.node.empty()) {
+      at = &steps_.Get(at->command.node);
+    }
+    if (lift.held || step_.t > at->t) return overlay;
+    AddContacts(overlay, lift.grip, true);
+    SetHand(overlay, lift.hand);
     return overlay;
   }
 
@@ -114,22 +258,36 @@ class Maker {
     return overlay;
   }
 
-  // Colours triangles by the best s_c of the shown nodes that use them.
-  PictureOverlay ShowScores(const ScoreFacts& scores, const std::vector<int>& shown) const {
+  // Colours triangles by the best score of the shown nodes that use them.
+  PictureOverlay ShowScores(const std::vector<double>& scores, const std::vector<int>& shown,
+                            const std::string& title) const {
     PictureOverlay overlay = ShowMesh(*steps_.FindBefore<MeshFacts>(step_));
     const int count = static_cast<int>(overlay.face_colors.size());
     std::vector<double> best(count, -1.0);
-    const double highest = *std::max_element(scores.s_c.begin(), scores.s_c.end());
+    const double highest = *std::max_element(scores.begin(), scores.end());
     for (const int node : shown) {
-      for (const int t : {node / count, node % count})
-        best[t] = std::max(best[t], scores.s_c[node]);
+      for (const int t : {node / count, node % count}) best[t] = std::max(best[t], scores[node]);
     }
     for (int t = 0; t < count; ++t) {
       overlay.face_colors[t] = best[t] >= 0.0 && highest > 0.0 ? ScoreColor(best[t] / highest)
                                                                : WithAlpha(NeutralColor(), 1.0F);
     }
-    overlay.legend = ScoreLegend("best score here", 0.0, std::max(0.0, highest));
+    overlay.legend = ScoreLegend(title, 0.0, std::max(0.0, highest));
+    if (std::any_of(best.begin(), best.end(), [](double score) { return score < 0.0; })) {
+      overlay.legend.swatches = {{WithAlpha(NeutralColor(), 1.0F), "no state of it is kept"}};
+    }
     return overlay;
+  }
+
+  void AddContacts(PictureOverlay& overlay, const std::vector<GraspContactFacts>& contacts,
+                   bool holds) const {
+    const RigidTransform X_WO = step_.object().X_WB();
+    for (const GraspContactFacts& contact : contacts) {
+      Touch(overlay, contact.finger);
+      overlay.contacts.push_back({contact.finger, X_WO * contact.p_OC,
+                                  X_WO.linear() * contact.nhat_O, X_WO.linear() * contact.f_O,
+                                  holds, FingerName(contact.finger)});
+    }
   }
 
   static void Touch(PictureOverlay& overlay, Finger finger) {

@@ -91,6 +91,11 @@ struct PictureMaker::Impl {
   void AddOverlay(RenderScene& picture, const PictureOverlay& overlay) const;
   void AddFinger(RenderScene& picture, const StepFacts& step, const FingerFacts& finger,
                  const PictureConfig& config) const;
+  void AddContact(RenderScene& picture, const PictureOverlay::Contact& contact, bool with_stub,
+                  const PictureConfig& config) const;
+  void AddWay(RenderScene& picture, const PictureOverlay::Way& way) const;
+  void AddTriangleLabels(RenderScene& picture, const StepFacts& step,
+                         const PictureOverlay& overlay) const;
   void AddArrow(RenderScene& picture, const Vector3& p_W, bool ends_there, const Vector3& f_W,
                 const Rgba& color, const std::string& name) const;
 };
@@ -137,8 +142,14 @@ MatrixX3 PictureMaker::Impl::FindFocus(const StepFacts& step, const PictureOverl
   // Fingers, but for those that have left: what they are far from would be small.
   const Vector3 size = seen_W.colwise().maxCoeff() - seen_W.colwise().minCoeff(),
                 middle_W = 0.5 * (seen_W.colwise().maxCoeff() + seen_W.colwise().minCoeff());
+  for (const PictureOverlay::Contact& contact : overlay.contacts) {
+    const double force = contact.f_W.norm();
+    if (!config.forces || force < kNoForce) continue;
+    const Vector3 tail_W = contact.p_W - contact.f_W * (scale.Length(force) / force);
+    Append(seen_W, MatrixX3(tail_W.transpose()));
+  }
   for (const FingerFacts& finger : step.fingers) {
-    if (overlay.hand || !finger.on) continue;
+    if (overlay.hand || !overlay.contacts.empty() || !finger.on) continue;
     const bool near = (finger.p_WF - middle_W).norm() < kNearFinger * size.maxCoeff();
     if (config.fingers && (finger.touching || near)) {
       const double radius = scene.tips.radius(finger.finger);
@@ -213,8 +224,11 @@ void PictureMaker::Impl::AddStartGhost(RenderScene& picture, const StepFacts& st
 void PictureMaker::Impl::AddOverlay(RenderScene& picture, const PictureOverlay& overlay) const {
   for (const PictureOverlay::Ghost& ghost : overlay.ghosts) {
     AddGhost(picture, ghost.X_WO, ghost.color);
+    picture.bodies.back().shading = Shading::kOutline;
   }
-  if (overlay.hand) AddHand(picture, hand, *overlay.hand, overlay.touching);
+  if (overlay.hand) {
+    AddHand(picture, hand, *overlay.hand, overlay.touching, overlay.colliding);
+  }
   picture.legend = overlay.legend;
 }
 
@@ -254,12 +268,66 @@ void PictureMaker::Impl::AddFinger(RenderScene& picture, const StepFacts& step,
   }
 }
 
+void PictureMaker::Impl::AddContact(RenderScene& picture, const PictureOverlay::Contact& contact,
+                                    bool with_stub, const PictureConfig& config) const {
+  const Rgba color = FingerColor(contact.finger);
+  if (config.fingers && with_stub) {
+    const Vector3 to_viewer_W = (picture.camera.p_WCam - contact.p_W).normalized();
+    for (RenderBody& body : MakeFingerStub(contact.finger, scene.tips.radius(contact.finger),
+                                           contact.p_W, contact.nhat_W, to_viewer_W)) {
+      picture.bodies.push_back(std::move(body));
+    }
+  }
+  if (config.cones) {
+    RenderCone cone;
+    cone.p_W = contact.p_W;
+    cone.axis_W = 0.035 * contact.nhat_W;
+    cone.half_angle = static_cast<float>(std::atan(scene.fingertips.friction));
+    cone.color = WithAlpha(contact.holds ? GoodColor() : BadColor(), 0.22F);
+    picture.cones.push_back(cone);
+  }
+  if (!config.forces) return;
+  if (contact.f_W.norm() < kNoForce) {
+    picture.labels.push_back({contact.p_W, contact.name, color});
+  } else {
+    AddArrow(picture, contact.p_W, true, contact.f_W, color, contact.name);
+  }
+}
+
+void PictureMaker::Impl::AddWay(RenderScene& picture, const PictureOverlay::Way& way) const {
+  const Rgba color = FingerColor(way.finger);
+  const auto radius = static_cast<float>(0.0025 * scale.shrunk);
+  picture.points.push_back({way.p_W.front(), radius, color});
+  for (std::size_t i = 1; i < way.p_W.size(); ++i) {
+    const Vector3 v_W = way.p_W[i] - way.p_W[i - 1];
+    const auto thin = static_cast<float>(0.0012 * scale.shrunk);
+    picture.arrows.push_back({way.p_W[i - 1], v_W, thin, color});
+  }
+  picture.labels.push_back({way.p_W.front(), way.name, color});
+}
+
+void PictureMaker::Impl::AddTriangleLabels(RenderScene& picture, const StepFacts& step,
+                                           const PictureOverlay& overlay) const {
+  if (overlay.contact_mesh == nullptr) return;
+  const TriangleMesh& mesh = *overlay.contact_mesh;
+  const RigidTransform X_WO = step.object().X_WB();
+  for (const PictureOverlay::TriangleLabel& label : overlay.triangle_labels) {
+    const Vector3 a = X_WO * Vector3(mesh.V.row(mesh.F(label.triangle, 0))),
+                  b = X_WO * Vector3(mesh.V.row(mesh.F(label.triangle, 1))),
+                  c = X_WO * Vector3(mesh.V.row(mesh.F(label.triangle, 2)));
+    const Vector3 middle_W = (a + b + c) / 3.0;
+    const bool away = (b - a).cross(c - a).dot(picture.camera.p_WCam - middle_W) < 0.0;
+    picture.labels.push_back({middle_W, label.text + (away ? ", far side" : ""), label.color});
+  }
+}
+
 namespace {
 
 // What of a step's overlay is to be shown.
 PictureOverlay Chosen(PictureOverlay overlay, const PictureConfig& config) {
   if (!config.mesh) overlay.contact_mesh = nullptr;
   if (!config.scores) {
+    overlay.triangle_labels.clear();
     std::fill(overlay.face_colors.begin(), overlay.face_colors.end(),
               WithAlpha(ObjectColor(), 1.0F));
     overlay.legend = {};
@@ -298,12 +366,19 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
   picture.camera = impl_->ChooseCamera(config, step, overlay);
   impl_->AddBodies(picture, step, overlay);
   if (config.ghost) impl_->AddStartGhost(picture, step, FindStart(step, steps));
-  if (!overlay.hand) {
+  if (!overlay.hand && overlay.contacts.empty()) {
     for (const FingerFacts& finger : step.fingers) {
       impl_->AddFinger(picture, step, finger, config);
     }
   }
   impl_->AddOverlay(picture, overlay);
+  for (const PictureOverlay::Contact& contact : overlay.contacts) {
+    impl_->AddContact(picture, contact, !overlay.hand, config);
+  }
+  if (config.forces) {
+    for (const PictureOverlay::Way& way : overlay.ways) impl_->AddWay(picture, way);
+  }
+  impl_->AddTriangleLabels(picture, step, overlay);
   if (config.contacts) {
     for (const ContactFacts& contact : step.contacts) {
       if (contact.a != 0 || contact.f_W.norm() < 1e-3) continue;
@@ -332,9 +407,17 @@ RenderScene PictureMaker::Compose(const StepFacts& step, const FactsSource& step
 
 namespace {
 
-// Whether the step's object was dropped: its lift failed, or it is far below where it began.
-bool IsDropped(const StepFacts& step, double lowest_z, double start_z) {
+// Whether the step's hand is still on its way from afar.
+bool IsOnItsWay(const StepFacts& step) {
+  const auto* frame = std::get_if<FrameFacts>(&step.details);
+  return frame != nullptr && frame->phase == "approach";
+}
+
+// Whether the step frames nothing but itself, as all others would be small: its object was dropped,
+// as its lift failed or it is far below where it began, or the hand is on its way.
+bool IsAside(const StepFacts& step, double lowest_z, double start_z) {
   constexpr double kFar = 0.5;  // [m], below which no hand hangs that takes hold at the start
+  if (IsOnItsWay(step)) return true;
   const auto* lift = std::get_if<LiftFacts>(&step.details);
   return (lift != nullptr && !lift->held) || lowest_z < start_z - kFar;
 }
@@ -353,7 +436,7 @@ MatrixX3 PictureMaker::CalcFocus(const std::vector<const StepFacts*>& shown,
     // The outermost do: a mesh may have any number of points.
     const MatrixX3 seen_U =
         FindOutermost(impl_->FindFocus(*step, overlay, config) * impl_->R_UW.transpose());
-    if (shown.size() > 1 && IsDropped(*step, seen_U.col(2).minCoeff(), start_z)) continue;
+    if (shown.size() > 1 && IsAside(*step, seen_U.col(2).minCoeff(), start_z)) continue;
     Append(focus_U, seen_U);
   }
   return focus_U * impl_->R_UW;
@@ -367,6 +450,19 @@ CameraConfig PictureMaker::Frame(const MatrixX3& focus_W, const PictureConfig& c
                           static_cast<double>(config.width) / config.height),
               impl_->R_UW.transpose());
   return {camera.p_WCam, camera.p_WTarget, camera.fov_deg};
+}
+
+CameraConfig PictureMaker::FrameOnWay(const CameraConfig& camera, const StepFacts& step,
+                                      const FactsSource& steps, const PictureConfig& config,
+                                      const std::optional<Vector3>& view) const {
+  if (!IsOnItsWay(step)) return camera;
+  const MatrixX3 focus_W = CalcFocus({&step}, steps, config);
+  const RenderCamera camera_U =
+      Rotated({camera.p_WCam, camera.p_WTarget, camera.fov_deg}, impl_->R_UW);
+  const double aspect = static_cast<double>(config.width) / config.height;
+  return IsInSight(camera_U, focus_W * impl_->R_UW.transpose(), aspect, 0.0)
+             ? camera
+             : Frame(focus_W, config, view);
 }
 
 namespace {
@@ -396,11 +492,11 @@ void PictureMaker::ShareCamera(std::vector<StepPicture>& pictures, const FactsSo
   const double start_z = impl_->start_focus_U.col(2).minCoeff();
   for (Group& group : groups) {
     MatrixX3 focus_W = impl_->start_focus_U * impl_->R_UW;
-    std::vector<bool> dropped;
+    std::vector<bool> aside;
     for (const auto& [picture, seen_W] : group.members) {
       const double lowest_z = (seen_W * impl_->up_W).minCoeff();
-      dropped.push_back(IsDropped(*picture->step, lowest_z, start_z));
-      if (!dropped.back()) Append(focus_W, seen_W);
+      aside.push_back(IsAside(*picture->step, lowest_z, start_z));
+      if (!aside.back()) Append(focus_W, seen_W);
     }
     const CameraConfig camera = Frame(focus_W, *group.shape);
     const double aspect = static_cast<double>(group.shape->width) / group.shape->height;
@@ -409,7 +505,7 @@ void PictureMaker::ShareCamera(std::vector<StepPicture>& pictures, const FactsSo
     for (std::size_t i = 0; i < group.members.size(); ++i) {
       const auto& [picture, seen_W] = group.members[i];
       const MatrixX3 seen_U = seen_W * impl_->R_UW.transpose();
-      if (!dropped[i] || IsInSight(camera_U, seen_U, aspect, 0.0)) picture->config.camera = camera;
+      if (!aside[i] || IsInSight(camera_U, seen_U, aspect, 0.0)) picture->config.camera = camera;
     }
   }
 }

@@ -79,7 +79,8 @@ class PictureMaker {
 
   /// What matters in every one of these steps: the object, where plans leave it, the hand, as
   /// points of the world (#points x 3). Of several steps those do not count whose object was
-  /// dropped, by a lift that failed or far below everything else. @param shown  at least one.
+  /// dropped, by a lift that failed or far below everything else, nor those whose hand is still on
+  /// its way from afar: all others would be small. @param shown  at least one.
   MatrixX3 CalcFocus(const std::vector<const StepFacts*>& shown, const FactsSource& steps,
                      const PictureConfig& config) const;
 
@@ -88,9 +89,15 @@ class PictureMaker {
   CameraConfig Frame(const MatrixX3& focus_W, const PictureConfig& config,
                      const std::optional<Vector3>& view = std::nullopt) const;
 
+  /// `camera`, or where that does not show a hand that is still on its way from afar, one by the
+  /// same direction that does.
+  CameraConfig FrameOnWay(const CameraConfig& camera, const StepFacts& step,
+                          const FactsSource& steps, const PictureConfig& config,
+                          const std::optional<Vector3>& view = std::nullopt) const;
+
   /// Gives those of these pictures that have no camera one: of all that are as wide for their
-  /// height the same, framed over all their steps. What was dropped frames nothing, and keeps an
-  /// automatic camera of its own where that one does not show it.
+  /// height the same, framed over all their steps. What CalcFocus leaves aside frames nothing, and
+  /// keeps an automatic camera of its own where that one does not show it.
   void ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps) const;
 
  private:

@@ -147,10 +147,10 @@ std::string EndOfOptimisation(const IterationFacts& facts) {
 
 Lines Describe(const Scene& /*scene*/, const IterationFacts& facts) {
   Lines lines = {
-      fmt::format("Iteration {}: {} plans, of noise about the mean or of steady pushes, were "
-                  "simulated; the ghosts are where the best of them leave the object, and the mean "
-                  "moves to their average, in which the best weigh most. The object is where the "
-                  "best plan so far leaves it.{}",
+      fmt::format("Iteration {}: {} plans were simulated, noise about the mean or steady pushes. "
+                  "The object is where the best plan so far leaves it, the outlines are where the "
+                  "best of this iteration do; the mean moves to their average, in which the best "
+                  "weigh most.{}",
                   facts.iteration, facts.rollouts.size(), EndOfOptimisation(facts)),
       fmt::format("best cost\t{:.3f}", facts.best_cost),
       fmt::format("mean cost\t{:.3f}", facts.mean_cost)};
@@ -165,6 +165,22 @@ Lines Describe(const Scene& /*scene*/, const IterationFacts& facts) {
     }
   }
   return lines;
+}
+
+// What moves the object in a stage: "index on triangle 31, its target goes 85 mm".
+std::string DescribeStage(const StageFacts& stage) {
+  std::string text;
+  for (const StageFingerFacts& finger : stage) {
+    if (!finger.on) continue;
+    double way = 0.0;
+    for (std::size_t i = 1; i < finger.p_WTargets.size(); ++i) {
+      way += (finger.p_WTargets[i] - finger.p_WTargets[i - 1]).norm();
+    }
+    text += fmt::format("{}{} ", text.empty() ? "" : "; ", FingerName(finger.finger));
+    text += finger.kept ? "stays" : fmt::format("on triangle {}", finger.triangle);
+    if (way > 0.0) text += fmt::format(", its target goes {:.0f} mm", 1e3 * way);
+  }
+  return text.empty() ? "no finger" : text;
 }
 
 Lines Describe(const Scene& scene, const CertifyFacts& facts) {
@@ -184,6 +200,9 @@ Lines Describe(const Scene& scene, const CertifyFacts& facts) {
       lines.push_back(fmt::format("out of reach at\t{:.2f} s", *facts.out_of_reach_t));
     }
   }
+  for (std::size_t i = 0; i < facts.stages.size(); ++i) {
+    lines.push_back(fmt::format("stage {}\t{}", i + 1, DescribeStage(facts.stages[i])));
+  }
   lines.push_back(fmt::format("moves in {:g} s\t{:.2f} mm, {:.2f} deg", facts.hold_seconds,
                               facts.hold_shift_mm, facts.hold_turn_deg));
   lines.push_back(fmt::format("at half the step\t{:.2f} mm, {:.2f} deg elsewhere",
@@ -198,6 +217,11 @@ Lines Describe(const Scene& scene, const CertifyFacts& facts) {
   if (facts.robust) {
     lines.push_back(fmt::format("in changed worlds\t{} of {} end alike", facts.robust->held,
                                 facts.robust->worlds));
+    if (!facts.robust->elsewhere.empty()) {
+      std::vector<std::string> changes;
+      for (const std::string& change : facts.robust->elsewhere) changes.push_back(Words(change));
+      lines.push_back("not with\t" + Join(changes, ", "));
+    }
   }
   return lines;
 }

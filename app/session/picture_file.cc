@@ -210,6 +210,12 @@ CameraConfig PictureDrawer::FrameSteps(const std::vector<const StepFacts*>& show
   return Frame(CalcFocus(shown, steps, config), config, view);
 }
 
+CameraConfig PictureDrawer::FrameOnWay(const CameraConfig& camera, const StepFacts& step,
+                                       const FactsSource& steps, const PictureConfig& config,
+                                       const std::optional<Vector3>& view) {
+  return Maker().FrameOnWay(camera, step, steps, config, view);
+}
+
 void PictureDrawer::ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps) {
   Maker().ShareCamera(pictures, steps);
 }

@@ -69,6 +69,11 @@ class PictureDrawer {
                           const PictureConfig& config,
                           const std::optional<Vector3>& view = std::nullopt);
 
+  /// PictureMaker::FrameOnWay.
+  CameraConfig FrameOnWay(const CameraConfig& camera, const StepFacts& step,
+                          const FactsSource& steps, const PictureConfig& config,
+                          const std::optional<Vector3>& view = std::nullopt);
+
   /// PictureMaker::ShareCamera.
   void ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps);
 

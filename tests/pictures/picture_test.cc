@@ -339,6 +339,94 @@ TEST_F(PictureMakerTest, AnOverlayIsShownByItsName) {
   EXPECT_GT(compose(frame, {}).bodies.size(), compose(frame, config).bodies.size() + 10U);
 }
 
+std::vector<std::string> TextsOf(const RenderScene& picture) {
+  std::vector<std::string> texts;
+  for (const RenderLabel& label : picture.labels) texts.push_back(label.text);
+  return texts;
+}
+
+bool Has(const std::vector<std::string>& texts, const std::string& text) {
+  return std::find(texts.begin(), texts.end(), text) != texts.end();
+}
+
+TEST_F(PictureMakerTest, AGraspShowsItsOwnFingersAndTheirForcesAndOneWithoutForcesTheirPlaces) {
+  const PlannedSteps steps(timeline_.root().facts);
+  // A plan's finger presses: a grasp without it must not show it.
+  StepFacts step = PlannedSteps::Follow(steps.Get("graph.score"), "path.1.grasp.1", Verb::kGrasp);
+  step.fingers[1].on = step.fingers[1].touching = true;
+  step.fingers[1].f_W = Vector3(0, 0, -3.0);
+  GraspFacts grasp;
+  grasp.feasible = true;
+  for (const Finger finger : {Finger::kThumb, Finger::kMiddle}) {
+    const double side = finger == Finger::kThumb ? 1.0 : -1.0;
+    grasp.contacts.push_back(
+        {finger, {0.1, 0.015 * side, 0}, {0, side, 0}, {0, -1.25 * side, 0.5}});
+  }
+  step.details = grasp;
+  RenderScene picture = maker_.Compose(step, steps, {}, {});
+  EXPECT_EQ(picture.cones.size(), 2U);
+  EXPECT_EQ(picture.cones[0].color.g, GoodColor().g);
+  std::vector<std::string> texts = TextsOf(picture);
+  EXPECT_TRUE(Has(texts, "thumb 1.35 N") && Has(texts, "middle 1.35 N"));
+  EXPECT_EQ(texts.size(), 3U);  // and the weight
+  // The arrow ends where the finger touches, pointing as the object is pushed.
+  EXPECT_NEAR(picture.arrows[0].v_W.normalized().y(), -1.25 / std::hypot(1.25, 0.5), 1e-9);
+
+  grasp.feasible = false;
+  for (GraspContactFacts& contact : grasp.contacts) contact.f_O.setZero();
+  step.details = grasp;
+  picture = maker_.Compose(step, steps, {}, {});
+  EXPECT_EQ(picture.cones[0].color.g, BadColor().g);
+  texts = TextsOf(picture);
+  EXPECT_TRUE(Has(texts, "thumb") && Has(texts, "middle"));
+}
+
+TEST_F(PictureMakerTest, AGraphSaysWhereAPathMayBeginAndAPathNamesItsTriangles) {
+  const PlannedSteps steps(timeline_.root().facts);
+  const StepFacts& score = steps.Get("graph.score");
+  StepFacts step = PlannedSteps::Follow(score, "graph.prune.3", Verb::kPrune);
+  PruneFacts pruned;
+  pruned.cut = "edges";
+  pruned.complete = true;
+  const auto begin_of_first = [&] {
+    step.details = pruned;
+    const RenderLegend legend = maker_.Compose(step, steps, {}, {}).legend;
+    return legend.swatches.at(0).second + ", " + legend.swatches.at(1).second;
+  };
+  EXPECT_EQ(begin_of_first(), "0: a path may begin there, 0: only later on a path");
+  pruned.kept = {0};
+  EXPECT_EQ(begin_of_first(), "0: a path may begin there, 1: only later on a path");
+  pruned.initial = {0};
+  EXPECT_EQ(begin_of_first(), "1: a path may begin there, 0: only later on a path");
+
+  step = PlannedSteps::Follow(score, "paths.rank.1", Verb::kPath);
+  PathFacts path;
+  path.nodes.resize(2);
+  step.details = path;
+  const std::vector<std::string> texts = TextsOf(maker_.Compose(step, steps, {}, {}));
+  ASSERT_EQ(texts.size(), 1U);
+  EXPECT_EQ(texts[0].rfind("thumb 1+2, index 1+2: 0", 0), 0U) << texts[0];
+}
+
+TEST_F(PictureMakerTest, AHandOnItsWayFramesNothingAndIsShownByAWiderCamera) {
+  const PlannedSteps steps(timeline_.root().facts);
+  StepFacts frame = PlannedSteps::Follow(steps.Get("graph.score"), "motion.key.1", Verb::kKeyframe);
+  FrameFacts facts;
+  facts.phase = "approach";
+  facts.hand.p_WH = Vector3(0.0, 0.0, 2.0);
+  frame.details = facts;
+  const StepFacts& start = timeline_.root().facts;
+  const MatrixX3 alone_W = maker_.CalcFocus({&start, &start}, steps, {}),
+                 both_W = maker_.CalcFocus({&start, &frame}, steps, {});
+  const CameraConfig camera = maker_.Frame(alone_W, {});
+  EXPECT_EQ(maker_.Frame(both_W, {}).p_WCam, camera.p_WCam);
+  EXPECT_EQ(maker_.FrameOnWay(camera, start, steps, {}).p_WCam, camera.p_WCam);
+  const CameraConfig wider = maker_.FrameOnWay(camera, frame, steps, {});
+  EXPECT_TRUE(IsInSight({wider.p_WCam, wider.p_WTarget, wider.fov_deg},
+                        MatrixX3(facts.hand.p_WH.transpose()), 16.0 / 9.0, 0.0));
+  EXPECT_GT(wider.p_WCam.norm(), camera.p_WCam.norm());
+}
+
 TEST_F(PictureMakerTest, KeyStepsAreTheFirstGraspsOfEachKindAndEveryFifthIteration) {
   const PlannedSteps steps(timeline_.root().facts);
   const StepFacts& score = steps.Get("graph.score");
@@ -364,7 +452,17 @@ TEST(WordsTest, DifferencesAreNamedAsCardsNameThemWithUnits) {
   EXPECT_EQ(DescribeRowDifferences({"x\t1", "y\t1"}, {"x\t2", "y\t2"}, 1), "x: A 1, B 2");
   EXPECT_EQ(DescribeField("details.max_force_N"), "largest force [N]");
   EXPECT_EQ(DescribeField("details.score_scale"), "weight of the terms that break ties");
-  EXPECT_EQ(DescribeField("bodies[0].p_WB[1]"), "bodies[0].p_WB[1]");
+  EXPECT_EQ(DescribeField("bodies[0].p_WB[1]"), "the object: place, y [m]");
+  EXPECT_EQ(DescribeField("bodies[2].v_WB[0]"), "body 3: speed, x [m/s]");
+  EXPECT_EQ(DescribeField("fingers[1].f_W[2]"), "index: force, z [N]");
+  EXPECT_EQ(DescribeField("details.rollouts[3].cost.total"), "plan 4: cost: total");
+  EXPECT_EQ(DescribeField("details.rollouts[0].p_WO_end[2]"),
+            "plan 1: place where it leaves the object, z [m]");
+  EXPECT_EQ(DescribeField("details.s_c[17]"), "score here of state 17");
+  EXPECT_EQ(DescribeField("details.some_new_thing_mm"), "some new thing [mm]");
+  EXPECT_EQ(DescribeValue("-0.11551765274013556", "-0.12001633355154127"), "-0.1155");
+  EXPECT_EQ(DescribeValue("0.123456", "0.123457"), "0.123456");
+  EXPECT_EQ(DescribeValue("true", "false"), "true");
 }
 
 TEST(ForcesTest, PressedPulledRulerObeysTheSpringAndTheCone) {
@@ -498,8 +596,9 @@ TEST(PlanningWordsTest, SayWhatWasSimulatedAndWhatEndedIt) {
   facts.limit = 15;
   facts.rollouts.resize(48);
   const std::string going_on = FirstSentence(facts);
-  EXPECT_EQ(going_on.find("Iteration 4: 48 plans, of noise about the mean or of steady pushes"),
-            0U);
+  EXPECT_EQ(
+      going_on.find("Iteration 4: 48 plans were simulated, noise about the mean or steady pushes"),
+      0U);
   EXPECT_EQ(going_on.find("ends it"), std::string::npos);
   facts.end = "limit";
   EXPECT_NE(FirstSentence(facts).find("The limit of 15 iterations ends it."), std::string::npos);
