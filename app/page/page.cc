@@ -130,7 +130,11 @@ class Page {
       shot.config.camera = drawer.FrameSteps(strip, run_, shot.config);
       if (&strip == &strips.front()) story_camera_ = *shot.config.camera;
       if (&strip == &strips.back()) film_camera_ = *shot.config.camera;
-      for (const StepFacts* step : strip) images[step] = drawer.Render(*step, run_, shot);
+      const CameraConfig camera = *shot.config.camera;
+      for (const StepFacts* step : strip) {
+        shot.config.camera = drawer.FrameOnWay(camera, *step, run_, shot.config);
+        images[step] = drawer.Render(*step, run_, shot);
+      }
     }
     for (const int quality : {86, 74, 60, 45, 30}) {
       std::size_t bytes = 0;
@@ -208,6 +212,26 @@ class Page {
     return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", id, title, content);
   }
 
+  // What screening found of a path, beside the others: "" for none.
+  std::string Screening(int rank) const {
+    std::map<int, const ScreenFacts*> last;  // by path
+    for (const StepFacts& step : run_.steps) {
+      if (const auto* screen = std::get_if<ScreenFacts>(&step.details)) last[screen->path] = screen;
+    }
+    const auto own = last.find(rank);
+    if (own == last.end()) return "";
+    const double value = own->second->value;
+    const auto better = std::count_if(
+        last.begin(), last.end(), [&](const auto& other) { return other.second->value > value; });
+    return fmt::format(
+        " Of {} paths that were screened {}: {:.3f}, where doing nothing is worth {:.3f}.",
+        last.size(),
+        better == 0   ? "it is worth most"
+        : better == 1 ? "one is worth more"
+                      : fmt::format("{} are worth more", better),
+        value, own->second->rest_reward);
+  }
+
   // One sentence of each kind of decision on the way, the last of its kind.
   std::string InShort() const {
     std::map<int, std::pair<int, std::string>> said;  // by rank in the story: number, sentence
@@ -215,6 +239,14 @@ class Page {
       std::string text;
       for (const std::string& line : Words(step)) {
         if (line.find('\t') == std::string::npos) text += (text.empty() ? "" : " ") + line;
+      }
+      if (const auto* path = std::get_if<PathFacts>(&step.details)) text += Screening(path->rank);
+      if (std::holds_alternative<CertifyFacts>(step.details)) {
+        for (const std::string& line : Words(step)) {  // what moves the object
+          const std::size_t tab = line.find('\t');
+          if (tab == std::string::npos || line.rfind("stage ", 0) != 0) continue;
+          text += fmt::format(" S{}: {}.", line.substr(1, tab - 1), line.substr(tab + 1));
+        }
       }
       if (!text.empty()) said[rank] = {steps_.NumberOf(step), text};
     };
@@ -259,7 +291,10 @@ class Page {
   }
 
   std::string Story() const {
-    std::string html = "<p class=\"hint\">In the order in which it was computed.</p>\n", chapter;
+    std::string html =
+                    "<p class=\"hint\">In the order in which it was computed, the hand's motion in "
+                    "time.</p>\n",
+                chapter;
     for (const StepFacts* step : story_) {
       const std::string heading = Chapter(step->command.verb);
       if (heading != chapter) html += "<h3>" + heading + "</h3>\n";
@@ -291,25 +326,59 @@ class Page {
         " With scripts, states that were pruned are pale, and any can be asked.</p>\n";
     html += "<div class=\"graph\" id=\"graph-view\"><div class=\"matrix-box\">" +
             GraphSvg(*graph()) + "</div><div class=\"scripted graph-side\"></div></div>\n";
+    html += ReasonList("Why the states of the path are in it", StatesOfPath(), " open");
+    html += ReasonList("Why the next ones are not", NextPruned(), " open");
     std::vector<int> best = graph()->kept();
     std::stable_sort(best.begin(), best.end(), [this](int a, int b) {
       return graph()->nodes()[a].rank_c < graph()->nodes()[b].rank_c;
     });
     constexpr std::size_t kListed = 12;
     if (best.size() > kListed) best.resize(kListed);
-    std::string list;
-    for (const int id : best) {
-      list += "<li>" + EscapeHtml(DescribeReason(graph()->Why(id))) + ".</li>\n";
-    }
-    if (!list.empty()) {
-      html += fmt::format(
-          "<details><summary>The best {} of those that were kept</summary>\n<ul>\n"
-          "{}</ul></details>\n",
-          best.size(), list);
-    }
+    html += ReasonList(fmt::format("The best {} of those that were kept", best.size()), best, "");
     html += "<script type=\"application/json\" id=\"graph-data\">" +
             ScriptJson(PageGraph(*graph())) + "</script>\n";
     return Section("graph", "The contact graph", html);
+  }
+
+  // The states of the path that led to the result, in its order, each once.
+  std::vector<int> StatesOfPath() const {
+    std::vector<int> states;
+    for (const StepFacts* step : steps_.way()) {
+      const auto* path = std::get_if<PathFacts>(&step->details);
+      if (path == nullptr) continue;
+      states.clear();  // the last one that was followed
+      for (const NodeFacts& node : path->nodes) {
+        if (std::find(states.begin(), states.end(), node.id) == states.end()) {
+          states.push_back(node.id);
+        }
+      }
+    }
+    return states;
+  }
+
+  // Those that were pruned and have the best rank, by each score.
+  std::vector<int> NextPruned() const {
+    std::vector<int> next;
+    for (const auto rank : {&ContactNode::rank_c, &ContactNode::rank_n}) {
+      const ContactNode* best = nullptr;
+      for (const ContactNode& node : graph()->nodes()) {
+        if (graph()->Why(node.id).verdict != NodeReason::Verdict::kPruned) continue;
+        if (best == nullptr || node.*rank < best->*rank) best = &node;
+      }
+      if (best != nullptr && (next.empty() || next.front() != best->id)) next.push_back(best->id);
+    }
+    return next;
+  }
+
+  std::string ReasonList(const std::string& title, const std::vector<int>& nodes,
+                         const char* open) const {
+    std::string list;
+    for (const int id : nodes) {
+      list += "<li>" + EscapeHtml(DescribeReason(graph()->Why(id))) + ".</li>\n";
+    }
+    if (list.empty()) return "";
+    return fmt::format("<details{}><summary>{}</summary>\n<ul>\n{}</ul></details>\n", open, title,
+                       list);
   }
 
   bool HasCosts() const {
