@@ -37,12 +37,6 @@ Rgba Mixed(const Rgba& a, const Rgba& b, float share_of_b) {
           share * a.b + share_of_b * b.b, 1.0F};
 }
 
-double LengthOf(const std::vector<Vector3>& way) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < way.size(); ++i) length += (way[i] - way[i - 1]).norm();
-  return length;
-}
-
 void AppendHand(MatrixX3& points, const HandModel& hand, const HandConfiguration& configuration) {
   for (const RigidTransform& X_WL : CalcLinkPoses(hand, configuration)) {
     points.conservativeResize(points.rows() + 1, 3);
@@ -186,37 +180,23 @@ class Maker {
     }
   }
 
-  // Where a plan's fingers touch the object, at its start.
+  // Where a plan's fingers touch the object at its start, and where these points of it end.
   void ShowContacts(PictureOverlay& overlay, const std::vector<StageFacts>& stages) const {
-    const RigidTransform X_WO = FindStart(step_, steps_).object().X_WB();
+    const RigidTransform X_from = FindStart(step_, steps_).object().X_WB(),
+                         X_to = step_.object().X_WB();
     for (std::size_t i = 0; i < stages.size(); ++i) {
       for (const StageFingerFacts& finger : stages[i]) {
         if (!finger.on || (finger.kept && i > 0)) continue;
         overlay.ways.push_back({finger.finger,
-                                {X_WO * finger.p_OC},
+                                {X_from * finger.p_OC, X_to * finger.p_OC},
                                 fmt::format("stage {}: {}", i + 1, FingerName(finger.finger))});
       }
     }
   }
 
-  // Where the targets of the fingers' forces go: what moves the object.
   PictureOverlay Show(const CertifyFacts& plan) const {
     PictureOverlay overlay;
-    const RigidTransform X_WO = FindStart(step_, steps_).object().X_WB();
-    for (std::size_t i = 0; i < plan.stages.size(); ++i) {
-      for (const StageFingerFacts& finger : plan.stages[i]) {
-        if (!finger.on || finger.p_WTargets.empty()) continue;
-        PictureOverlay::Way way{finger.finger, {}, ""};
-        if (i == 0) way.p_W.push_back(X_WO * finger.p_OC);
-        way.p_W.insert(way.p_W.end(), finger.p_WTargets.begin(), finger.p_WTargets.end());
-        constexpr double kShortest = 2e-3;  // [m], worth showing
-        const double length = LengthOf(way.p_W);
-        if (length < kShortest) continue;
-        way.name = fmt::format("stage {}: {} target, {:.0f} mm", i + 1, FingerName(finger.finger),
-                               1e3 * length);
-        overlay.ways.push_back(way);
-      }
-    }
+    ShowContacts(overlay, plan.stages);
     return overlay;
   }
 

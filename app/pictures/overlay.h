@@ -37,7 +37,7 @@ struct PictureOverlay {
     std::string name;   ///< "thumb"; where no force is known, the label
   };
   std::vector<Contact> contacts;  ///< in place of the fingers of the physics
-  /// Where the target of a finger's force goes.
+  /// Where a finger touches the object, and where that point of it goes.
   struct Way {
     Finger finger = Finger::kThumb;
     std::vector<Vector3> p_W;

@@ -167,18 +167,13 @@ Lines Describe(const Scene& /*scene*/, const IterationFacts& facts) {
   return lines;
 }
 
-// What moves the object in a stage: "index on triangle 31, its target goes 85 mm".
+// What moves the object in a stage: "index on triangle 31".
 std::string DescribeStage(const StageFacts& stage) {
   std::string text;
   for (const StageFingerFacts& finger : stage) {
     if (!finger.on) continue;
-    double way = 0.0;
-    for (std::size_t i = 1; i < finger.p_WTargets.size(); ++i) {
-      way += (finger.p_WTargets[i] - finger.p_WTargets[i - 1]).norm();
-    }
-    text += fmt::format("{}{} ", text.empty() ? "" : "; ", FingerName(finger.finger));
+    text += fmt::format("{}{} ", text.empty() ? "" : ", ", FingerName(finger.finger));
     text += finger.kept ? "stays" : fmt::format("on triangle {}", finger.triangle);
-    if (way > 0.0) text += fmt::format(", its target goes {:.0f} mm", 1e3 * way);
   }
   return text.empty() ? "no finger" : text;
 }
