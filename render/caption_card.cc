@@ -164,16 +164,17 @@ std::vector<std::string> WrapText(FontSet& fonts, FontFace face, float size,
 
 namespace {
 
-// The first of these corners, unless at another one a card hides clearly less.
+// The first of these corners, unless at another one a card hides clearly less of some thing: a
+// small one that is hidden wholly counts more than the corner of a table.
 Rect ChooseCorner(const Vector2& size, const std::vector<Vector2>& corners, double margin,
                   const CardArea& area) {
-  constexpr double kClearly = 0.005;  // of the card
+  constexpr double kClearly = 0.02;  // of a thing
   std::optional<Rect> best;
   double covered = 0.0;
   for (const Vector2& corner : corners) {
     const Rect card{corner.x(), corner.y(), size.x(), size.y()};
     if (best && area.taken && card.Overlaps(area.taken->Grown(margin))) continue;
-    const double share = CalcCoveredShare(card, area.outlines);
+    const double share = CalcHiddenShares(card, area.outlines);
     if (best && share >= covered - kClearly) continue;
     covered = share;
     best = card;
@@ -273,7 +274,10 @@ std::optional<Rect> DrawLegend(Canvas& canvas, FontSet& fonts, const OverlayStyl
   const double right = canvas.width() - margin - size.x(), low = area.bottom - margin - size.y();
   if (right < margin || low < margin) return std::nullopt;
   std::vector<Vector2> corners = {{right, low}, {margin, low}};
-  if (area.top_is_free) corners.emplace_back(right, margin);
+  if (area.top_is_free) {
+    corners.emplace_back(right, margin);
+    corners.emplace_back(margin, margin);
+  }
   const Rect card = ChooseCorner(size, corners, margin, area);
 
   canvas.FillRoundedRect(card, style.px(5.0), style.panel);

@@ -185,18 +185,28 @@ class Layout {
 
 }  // namespace
 
-double CalcCoveredShare(const Rect& rect, const std::vector<std::vector<Vector2>>& outlines) {
-  constexpr int kColumns = 24, kRows = 16;
-  int covered = 0;
-  for (int row = 0; row < kRows; ++row) {
-    for (int column = 0; column < kColumns; ++column) {
-      const Vector2 p(rect.x + (column + 0.5) / kColumns * rect.width,
-                      rect.y + (row + 0.5) / kRows * rect.height);
-      covered += std::any_of(outlines.begin(), outlines.end(),
-                             [&](const auto& outline) { return IsInside(p, outline); });
+double CalcHiddenShares(const Rect& rect, const std::vector<std::vector<Vector2>>& outlines) {
+  constexpr int kSamples = 16;  // along each side of what is around an outline
+  double shares = 0.0;
+  for (const std::vector<Vector2>& outline : outlines) {
+    if (outline.size() < 3) continue;
+    Vector2 low = outline.front(), high = outline.front();
+    for (const Vector2& p : outline) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
     }
+    if (!rect.Overlaps({low.x(), low.y(), high.x() - low.x(), high.y() - low.y()})) continue;
+    int all = 0, hidden = 0;
+    for (int i = 0; i < kSamples * kSamples; ++i) {
+      const Vector2 at((i % kSamples + 0.5) / kSamples, (i / kSamples + 0.5) / kSamples);
+      const Vector2 p = low + at.cwiseProduct(high - low);
+      if (!IsInside(p, outline)) continue;
+      ++all;
+      hidden += rect.Contains(p) ? 1 : 0;
+    }
+    if (all > 0) shares += static_cast<double>(hidden) / all;
   }
-  return static_cast<double>(covered) / (kColumns * kRows);
+  return shares;
 }
 
 Vector2 LeaderStart(const Rect& box, const Vector2& anchor) {

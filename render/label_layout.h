@@ -28,8 +28,9 @@ struct LabelArea {
 std::vector<std::optional<Rect>> LayOutLabels(const std::vector<LabelRequest>& requests,
                                               const LabelArea& area);
 
-/// The share of a rectangle's area that lies over convex outlines, by an even grid of points.
-double CalcCoveredShare(const Rect& rect, const std::vector<std::vector<Vector2>>& outlines);
+/// How much of convex outlines a rectangle hides: the sum of each one's share, by an even grid of
+/// points, so that a small thing counts as much as a large one.
+double CalcHiddenShares(const Rect& rect, const std::vector<std::vector<Vector2>>& outlines);
 
 /// The point of the box from which the leader to `anchor` starts.
 Vector2 LeaderStart(const Rect& box, const Vector2& anchor);

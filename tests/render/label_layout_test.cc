@@ -35,18 +35,18 @@ Case RandomCase(Rng& rng) {
   return c;
 }
 
-TEST(LabelLayoutTest, TheCoveredShareIsThatOfTheArea) {
+TEST(LabelLayoutTest, WhatIsHiddenIsTheSumOfEachThingsShare) {
   const Rect rect{10, 20, 240, 160};
   const std::vector<Vector2> left = {{-50, 0}, {130, 0}, {130, 300}, {-50, 300}},
                              corner = {{10, 20}, {250, 20}, {10, 180}},
                              away = {{300, 0}, {400, 0}, {350, 50}};
-  EXPECT_EQ(CalcCoveredShare(rect, {}), 0.0);
-  EXPECT_EQ(CalcCoveredShare(rect, {away}), 0.0);
-  EXPECT_DOUBLE_EQ(CalcCoveredShare(rect, {left}), 0.5);
-  EXPECT_NEAR(CalcCoveredShare(rect, {corner}), 0.5, 0.04);
+  EXPECT_EQ(CalcHiddenShares(rect, {}), 0.0);
+  EXPECT_EQ(CalcHiddenShares(rect, {away}), 0.0);
+  EXPECT_NEAR(CalcHiddenShares(rect, {left}), 120.0 / 180.0 * 160.0 / 300.0, 0.05);
+  EXPECT_DOUBLE_EQ(CalcHiddenShares(rect, {corner}), 1.0);            // small, and wholly behind it
   const std::vector<Vector2> turned(corner.rbegin(), corner.rend());  // the other way round
-  EXPECT_DOUBLE_EQ(CalcCoveredShare(rect, {turned}), CalcCoveredShare(rect, {corner}));
-  EXPECT_DOUBLE_EQ(CalcCoveredShare(rect, {left, left}), 0.5);  // counted once
+  EXPECT_DOUBLE_EQ(CalcHiddenShares(rect, {turned}), 1.0);
+  EXPECT_DOUBLE_EQ(CalcHiddenShares(rect, {corner, turned, away}), 2.0);
 }
 
 TEST(LabelLayoutTest, BoxesNeverOverlapEachOtherObstaclesOrAnchorsAndStayInside) {
