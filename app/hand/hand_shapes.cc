@@ -80,6 +80,7 @@ std::vector<RigidTransform> CalcLinkPoses(const HandModel& hand,
   HandPose pose;
   CalcHandPose(hand, configuration.X_WH, configuration.q, &pose);
   std::vector<RigidTransform> X_WL;
+  X_WL.reserve(hand.num_links());
   for (int link = 0; link < hand.num_links(); ++link) X_WL.push_back(pose.X_WL(link));
   return X_WL;
 }

@@ -86,7 +86,7 @@ std::vector<PictureGrid::Cell> MakeCells(const std::vector<StripStep>& steps, co
     Shot own = one;
     if (framed) {
       own.config.camera =
-          each.drawer->FrameOnWay(*one.config.camera, *each.step, *each.steps, one.config, view);
+          each.drawer->FrameOnWay(*one.config.camera, *each.step, *each.steps, one.config);
     }
     cell.draw = [each, own](int width, int height) {
       Shot shot_of_cell = own;

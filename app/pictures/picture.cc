@@ -452,17 +452,30 @@ CameraConfig PictureMaker::Frame(const MatrixX3& focus_W, const PictureConfig& c
   return {camera.p_WCam, camera.p_WTarget, camera.fov_deg};
 }
 
-CameraConfig PictureMaker::FrameOnWay(const CameraConfig& camera, const StepFacts& step,
-                                      const FactsSource& steps, const PictureConfig& config,
-                                      const std::optional<Vector3>& view) const {
-  if (!IsOnItsWay(step)) return camera;
-  const MatrixX3 focus_W = CalcFocus({&step}, steps, config);
-  const RenderCamera camera_U =
-      Rotated({camera.p_WCam, camera.p_WTarget, camera.fov_deg}, impl_->R_UW);
+namespace {
+
+// `camera`, moved back along its direction until it shows all points. @param R_UW  W to upright.
+CameraConfig MovedBack(const CameraConfig& camera, const MatrixX3& seen_W, const Matrix3& R_UW,
+                       const PictureConfig& config) {
+  constexpr double kStep = 1.1;
+  constexpr int kMostSteps = 40;  // to 45 times as far
   const double aspect = static_cast<double>(config.width) / config.height;
-  return IsInSight(camera_U, focus_W * impl_->R_UW.transpose(), aspect, 0.0)
-             ? camera
-             : Frame(focus_W, config, view);
+  const MatrixX3 seen_U = seen_W * R_UW.transpose();
+  CameraConfig moved = camera;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const RenderCamera camera_U = Rotated({moved.p_WCam, moved.p_WTarget, moved.fov_deg}, R_UW);
+    if (IsInSight(camera_U, seen_U, aspect, 0.0)) break;
+    moved.p_WCam = moved.p_WTarget + kStep * (moved.p_WCam - moved.p_WTarget);
+  }
+  return moved;
+}
+
+}  // namespace
+
+CameraConfig PictureMaker::FrameOnWay(const CameraConfig& camera, const StepFacts& step,
+                                      const FactsSource& steps, const PictureConfig& config) const {
+  if (!IsOnItsWay(step)) return camera;
+  return MovedBack(camera, CalcFocus({&step}, steps, config), impl_->R_UW, config);
 }
 
 namespace {
@@ -505,7 +518,11 @@ void PictureMaker::ShareCamera(std::vector<StepPicture>& pictures, const FactsSo
     for (std::size_t i = 0; i < group.members.size(); ++i) {
       const auto& [picture, seen_W] = group.members[i];
       const MatrixX3 seen_U = seen_W * impl_->R_UW.transpose();
-      if (!aside[i] || IsInSight(camera_U, seen_U, aspect, 0.0)) picture->config.camera = camera;
+      if (IsOnItsWay(*picture->step)) {
+        picture->config.camera = MovedBack(camera, seen_W, impl_->R_UW, *group.shape);
+      } else if (!aside[i] || IsInSight(camera_U, seen_U, aspect, 0.0)) {
+        picture->config.camera = camera;
+      }
     }
   }
 }

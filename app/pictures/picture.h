@@ -89,15 +89,15 @@ class PictureMaker {
   CameraConfig Frame(const MatrixX3& focus_W, const PictureConfig& config,
                      const std::optional<Vector3>& view = std::nullopt) const;
 
-  /// `camera`, or where that does not show a hand that is still on its way from afar, one by the
-  /// same direction that does.
+  /// `camera`, or where that does not show a hand that is still on its way from afar, it moved back
+  /// until it does.
   CameraConfig FrameOnWay(const CameraConfig& camera, const StepFacts& step,
-                          const FactsSource& steps, const PictureConfig& config,
-                          const std::optional<Vector3>& view = std::nullopt) const;
+                          const FactsSource& steps, const PictureConfig& config) const;
 
   /// Gives those of these pictures that have no camera one: of all that are as wide for their
-  /// height the same, framed over all their steps. What CalcFocus leaves aside frames nothing, and
-  /// keeps an automatic camera of its own where that one does not show it.
+  /// height the same, framed over all their steps. What CalcFocus leaves aside frames nothing:
+  /// where that camera does not show it, it is moved back for a hand on its way (FrameOnWay), and
+  /// what falls away keeps an automatic one of its own.
   void ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps) const;
 
  private:

@@ -211,9 +211,8 @@ CameraConfig PictureDrawer::FrameSteps(const std::vector<const StepFacts*>& show
 }
 
 CameraConfig PictureDrawer::FrameOnWay(const CameraConfig& camera, const StepFacts& step,
-                                       const FactsSource& steps, const PictureConfig& config,
-                                       const std::optional<Vector3>& view) {
-  return Maker().FrameOnWay(camera, step, steps, config, view);
+                                       const FactsSource& steps, const PictureConfig& config) {
+  return Maker().FrameOnWay(camera, step, steps, config);
 }
 
 void PictureDrawer::ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps) {

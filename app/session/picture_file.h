@@ -71,8 +71,7 @@ class PictureDrawer {
 
   /// PictureMaker::FrameOnWay.
   CameraConfig FrameOnWay(const CameraConfig& camera, const StepFacts& step,
-                          const FactsSource& steps, const PictureConfig& config,
-                          const std::optional<Vector3>& view = std::nullopt);
+                          const FactsSource& steps, const PictureConfig& config);
 
   /// PictureMaker::ShareCamera.
   void ShareCamera(std::vector<StepPicture>& pictures, const FactsSource& steps);

@@ -424,7 +424,10 @@ TEST_F(PictureMakerTest, AHandOnItsWayFramesNothingAndIsShownByAWiderCamera) {
   const CameraConfig wider = maker_.FrameOnWay(camera, frame, steps, {});
   EXPECT_TRUE(IsInSight({wider.p_WCam, wider.p_WTarget, wider.fov_deg},
                         MatrixX3(facts.hand.p_WH.transpose()), 16.0 / 9.0, 0.0));
-  EXPECT_GT(wider.p_WCam.norm(), camera.p_WCam.norm());
+  const Vector3 back = camera.p_WCam - camera.p_WTarget, further = wider.p_WCam - camera.p_WTarget;
+  EXPECT_EQ(wider.p_WTarget, camera.p_WTarget);
+  EXPECT_GT(further.norm(), back.norm());
+  EXPECT_LT(further.normalized().cross(back.normalized()).norm(), 1e-9);
 }
 
 TEST_F(PictureMakerTest, KeyStepsAreTheFirstGraspsOfEachKindAndEveryFifthIteration) {

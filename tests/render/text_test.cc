@@ -109,8 +109,9 @@ TEST(CaptionTest, TheCardStaysAtTheUpperLeftUnlessAnotherCornerHidesClearlyLess)
   const Rect usual = draw({430.0, {}, {}});
   EXPECT_LT(usual.right(), 400.0);
   EXPECT_LT(usual.bottom(), 200.0);
-  EXPECT_EQ(draw({430.0, {}, {box(0, 0, usual.x + 2.0, 450)}}).x,
-            usual.x);  // hides next to nothing
+  EXPECT_EQ(draw({430.0, {}, {box(-400, 0, usual.x + 402.0, 450)}}).x,
+            usual.x);  // hides next to nothing of it
+  EXPECT_GT(draw({430.0, {}, {box(usual.x + 10.0, usual.y + 10.0, 8, 8)}}).x, 400.0);
   const Rect right = draw({430.0, {}, {box(0, 0, 400, 450)}});
   EXPECT_GT(right.x, 400.0);
   EXPECT_EQ(right.y, usual.y);
