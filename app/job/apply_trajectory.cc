@@ -24,7 +24,8 @@ int TriangleOf(const Mppi& mppi, std::size_t stage, int finger) {
   return finger == 0 ? node.thumb : node.index;
 }
 
-// A plan's stages, of a RelativePlan or a WorldPlan, along the path.
+// A plan's stages, of a RelativePlan or a WorldPlan, along the path. A finger that is kept stays on
+// its triangle, whichever the path's next state has.
 template <typename Stages>
 std::vector<StageFacts> MakeStageFacts(const Mppi& mppi, const Stages& stages) {
   std::vector<StageFacts> facts;
@@ -35,7 +36,7 @@ std::vector<StageFacts> MakeStageFacts(const Mppi& mppi, const Stages& stages) {
       stage.push_back({static_cast<Finger>(f),
                        finger.on,
                        finger.kept,
-                       TriangleOf(mppi, i, f),
+                       finger.kept ? facts.back()[f].triangle : TriangleOf(mppi, i, f),
                        finger.contact.p_OC,
                        finger.contact.nhat_O,
                        {}});
@@ -218,9 +219,12 @@ RobustFacts MakeRobustFacts(Application& a) {
 // A plan made by hand touches where it likes.
 void SetTriangles(const TriangleMesh& mesh, std::vector<StageFacts>& stages) {
   const MeshDistance distance(mesh);
-  for (StageFacts& stage : stages) {
-    for (StageFingerFacts& finger : stage) {
-      if (finger.on) finger.triangle = distance.FindNearest(finger.p_OC).triangle;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    for (std::size_t f = 0; f < stages[i].size(); ++f) {
+      StageFingerFacts& finger = stages[i][f];
+      if (!finger.on) continue;
+      finger.triangle =
+          finger.kept ? stages[i - 1][f].triangle : distance.FindNearest(finger.p_OC).triangle;
     }
   }
 }

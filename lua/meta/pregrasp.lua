@@ -919,7 +919,7 @@ function Optimizer:shot(options) end
 ---@class RolloutFinger
 ---@field on boolean
 ---@field kept boolean it was on in the stage before, and keeps its contact
----@field triangle integer that it may touch
+---@field triangle integer that it may touch; where it is kept, that of the stage before
 ---@field p_OC Vector3? contact point in the object's frame [m]; nil unless it is put on here
 ---@field nhat_O Vector3? outward normal there
 ---@field knots RolloutKnot[]

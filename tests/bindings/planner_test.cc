@@ -170,6 +170,27 @@ TEST_F(PlannerScriptTest, ATrajectoryIsCertifiedAndItsGraspsHaveReasons) {
       "path.1.certify\ttrue\ttrue\t2\t3\ttrue\n3\tpath.1.grasp.1\tnil\ttrue\ttrue\n3\ttrue\n");
 }
 
+TEST_F(PlannerScriptTest, AFingerThatIsKeptStaysOnItsTriangle) {
+  EXPECT_EQ(Script(R"(
+    local kept, others = 0, 0
+    local paths = pruned():paths{ stages = 2 }
+    for i = 1, 12 do
+      local path = paths:next()
+      local o = path:optimize{ samples = 4, iterations = 1 }
+      o:step()
+      for _, finger in ipairs { "thumb", "index" } do
+        local first, second = o.nominal[1][finger], o.nominal[2][finger]
+        if second.kept then
+          kept = kept + 1
+          assert(second.triangle == first.triangle)
+          if path.nodes[2][finger] ~= first.triangle then others = others + 1 end
+        end
+      end
+    end
+    print(kept > 0, others > 0))"),
+            "true\ttrue\n");
+}
+
 TEST_F(PlannerScriptTest, APlanMadeByHandIsCertified) {
   EXPECT_EQ(Script(R"(
     local o = optimizer()
