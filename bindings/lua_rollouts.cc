@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <array>
 #include <numeric>
 
+#include "app/job/plan_triangles.h"
 #include "bindings/lua_grasp.h"
 #include "bindings/lua_planner.h"
 
@@ -36,16 +36,13 @@ void RequireRollout(const IterationFacts& facts, int number, const char* field) 
 void PushStages(lua_State* L, const Mppi& mppi, const std::vector<double>& action) {
   const RelativePlan plan = mppi.Decode(action);
   lua_createtable(L, static_cast<int>(plan.stages.size()), 0);
-  std::array<int, kNumPlanningFingers> triangles{};  // a finger that is kept stays on its own
+  const auto triangles = TrianglesOf(mppi, plan.stages);
   for (std::size_t i = 0; i < plan.stages.size(); ++i) {
-    const ContactNode& node =
-        mppi.problem().graph->nodes().at(static_cast<std::size_t>(mppi.problem().path.nodes[i]));
     RecordWriter stage(L, kRolloutStage);
     for (int f = 0; f < kNumPlanningFingers; ++f) {
       const FingerStage& finger = plan.stages[i][f];
-      if (!finger.kept) triangles[f] = f == 0 ? node.thumb : node.index;
       RecordWriter record(L, kRolloutFinger);
-      record.Set("on", finger.on).Set("kept", finger.kept).Set("triangle", triangles[f]);
+      record.Set("on", finger.on).Set("kept", finger.kept).Set("triangle", triangles[i][f]);
       if (finger.on && !finger.kept) {
         record.Set("p_OC", finger.contact.p_OC).Set("nhat_O", finger.contact.nhat_O);
       }

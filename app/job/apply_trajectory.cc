@@ -6,6 +6,7 @@
 #include "app/geometry/mesh_distance.h"
 #include "app/job/apply_stages.h"
 #include "app/job/plan_json.h"
+#include "app/job/plan_triangles.h"
 
 namespace pregrasp::internal {
 namespace {
@@ -16,18 +17,10 @@ CostFacts MakeCostFacts(const PlanCost& cost) {
   return facts;
 }
 
-// That of the path, whose last node stands for further stages, which a plan made by hand may have.
-int TriangleOf(const Mppi& mppi, std::size_t stage, int finger) {
-  const std::vector<int>& path = mppi.problem().path.nodes;
-  const ContactNode& node =
-      mppi.problem().graph->nodes().at(path[std::min(stage, path.size() - 1)]);
-  return finger == 0 ? node.thumb : node.index;
-}
-
-// A plan's stages, of a RelativePlan or a WorldPlan, along the path. A finger that is kept stays on
-// its triangle, whichever the path's next state has.
+// A plan's stages, of a RelativePlan or a WorldPlan, along the path.
 template <typename Stages>
 std::vector<StageFacts> MakeStageFacts(const Mppi& mppi, const Stages& stages) {
+  const auto triangles = TrianglesOf(mppi, stages);
   std::vector<StageFacts> facts;
   for (std::size_t i = 0; i < stages.size(); ++i) {
     StageFacts stage;
@@ -36,7 +29,7 @@ std::vector<StageFacts> MakeStageFacts(const Mppi& mppi, const Stages& stages) {
       stage.push_back({static_cast<Finger>(f),
                        finger.on,
                        finger.kept,
-                       finger.kept ? facts.back()[f].triangle : TriangleOf(mppi, i, f),
+                       triangles[i][f],
                        finger.contact.p_OC,
                        finger.contact.nhat_O,
                        {}});
